@@ -85,10 +85,13 @@ void add_fit_command(Program& program);
 void add_convert_command(Program& program);
 void add_export_command(Program& program);
 void add_run_command(Program& program);
+void add_demo_command(Program& program);
 void add_tradeoff_command(Program& program);
 void add_plan_command(Program& program);
 void add_lenses_command(Program& program);
 void add_glasses_command(Program& program);
 void add_coatings_command(Program& program);
+void add_completion_command(Program& program);
+void add_manual_command(Program& program);
 
 }  // namespace lensproof::cli

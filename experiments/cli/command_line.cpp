@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <optional>
+#include <sstream>
 
 #include "engine/base/input_error.h"
 #include "engine/base/nearest_name.h"
@@ -84,6 +85,43 @@ std::string complaint(const CLI::App& program, const CLI::ParseError& error) {
         }
     }
     return lacks && program.get_subcommands().empty() ? "expected a command" : error.what();
+}
+
+/// What "CRITERION:{paraxial,spot}" lets one choose from.
+std::vector<std::string> choices_of(const std::string& type) {
+    const std::size_t open = type.find('{');
+    const std::size_t close = type.find('}', open);
+    if (open == std::string::npos || close == std::string::npos) {
+        return {};
+    }
+    std::istringstream list(type.substr(open + 1, close - open - 1));
+    std::vector<std::string> choices;
+    for (std::string choice; std::getline(list, choice, ',');) {
+        choices.push_back(choice);
+    }
+    return choices;
+}
+
+OptionDescription describe_option(const CLI::Option& option) {
+    OptionDescription description{.stands_alone = option.get_positional(),
+                                  .is_required = option.get_required(),
+                                  .repeats = option.get_expected_max() > 1,
+                                  .choices = choices_of(option.get_type_name()),
+                                  .default_value = option.get_default_str(),
+                                  .help = option.get_description()};
+    if (description.stands_alone) {
+        description.names = {option.get_name(true)};
+    }
+    for (const std::string& name : option.get_snames()) {
+        description.names.push_back("-" + name);
+    }
+    for (const std::string& name : option.get_lnames()) {
+        description.names.push_back("--" + name);
+    }
+    if (option.get_items_expected_max() > 0) {
+        description.value = option.get_type_name().substr(0, option.get_type_name().find(':'));
+    }
+    return description;
 }
 
 }  // namespace
@@ -198,6 +236,22 @@ Program::~Program() = default;
 
 Command Program::add_command(const std::string& name, const std::string& description) {
     return {app_->add_subcommand(name, description), &status_};
+}
+
+std::vector<CommandDescription> Program::describe() const {
+    std::vector<CommandDescription> commands;
+    for (const CLI::App* const app : app_->get_subcommands({})) {
+        CommandDescription& command = commands.emplace_back();
+        command.name = app->get_name();
+        command.help = app->get_description();
+        command.footer = app->get_footer();
+        for (const CLI::Option* const option : app->get_options()) {
+            if (option != app->get_help_ptr()) {
+                command.options.push_back(describe_option(*option));
+            }
+        }
+    }
+    return commands;
 }
 
 int Program::run(int argc, char** argv) {

@@ -29,6 +29,27 @@ extern const OptionCheck kPositiveOption;     // a finite number above 0. (The l
 extern const OptionCheck kNotNegativeOption;  // a number that is not below 0
 extern const OptionCheck kSeedOption;         // digits alone. (The library turns -1 and 1e30 into some other seed.)
 
+/// An option as it was declared, for what is written from that: manual page and completions.
+struct OptionDescription {
+    std::vector<std::string> names;  // "-o", "--output"; of what stands without one, "LENS"
+    bool stands_alone = false;       // without a name
+    bool is_required = false;
+    bool repeats = false;              // takes more than one value
+    std::string value;                 // what stands for it in the help, "FILE"; empty: a flag
+    std::vector<std::string> choices;  // where only these will do
+    std::string default_value;         // empty: none that is told
+    std::string help;
+
+    bool operator==(const OptionDescription& other) const = default;
+};
+
+struct CommandDescription {
+    std::string name;
+    std::string help;
+    std::string footer;
+    std::vector<OptionDescription> options;
+};
+
 /// An option of a command, while it is declared.
 class Option {
   public:
@@ -82,6 +103,9 @@ class Program {
     Program& operator=(const Program&) = delete;
 
     Command add_command(const std::string& name, const std::string& description);
+
+    /// The commands that were added, in their order, without the --help of each.
+    [[nodiscard]] std::vector<CommandDescription> describe() const;
 
     /// Runs the command that the arguments name, and returns its exit status; 0 after --help and --version. Throws
     /// InputError for arguments that are unusable.

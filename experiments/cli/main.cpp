@@ -60,16 +60,16 @@ int flushed(int status) {
 }
 
 std::string version_text() {
-    return fmt::format("lensproof {}\ncommit {}\nbuilt against {}", runner::program_version(), runner::source_commit(),
-                       runner::library_versions());
+    return fmt::format("lensproof {}\ncommit {}\nbuilt by {} against {}", runner::program_version(),
+                       runner::source_commit(), runner::compiler_version(), runner::library_versions());
 }
 
 int run(int argc, char** argv) {
     Program program(
         "lensproof",
         "lensproof: does the simulated lens behave like the real one, where not, by how much, and how sure are we?",
-        version_text,
-        "The launcher also has: ./lensproof demo, the demo experiment, and ./lensproof test, every test.");
+        version_text, "Try it: lensproof demo");
+    add_demo_command(program);
     add_check_command(program);
     add_convert_command(program);
     add_analyze_command(program);
@@ -88,6 +88,8 @@ int run(int argc, char** argv) {
     add_lenses_command(program);
     add_glasses_command(program);
     add_coatings_command(program);
+    add_completion_command(program);
+    add_manual_command(program);
     return program.run(argc, argv);
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "engine/base/cache.h"
+#include "engine/base/data_root.h"
 #include "engine/base/json.h"
 #include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
@@ -139,6 +140,19 @@ void add_run_command(Program& program) {
     command.add_flag("--fresh", options->fresh, "Do every step again, also those that an earlier run has finished");
     add_common_options(command, options->common);
     command.runs([options] { return run(*options); });
+}
+
+void add_demo_command(Program& program) {
+    const auto options = std::make_shared<RunOptions>();
+    Command command = program.add_command("demo", "Run the demo, the experiment first_light, and write its report");
+    command.footer("Example: lensproof demo -o output/first_light");
+    command.add_option("-o,--output", options->output, "Folder to write (default: output/first_light)")
+        .type_name("DIR");
+    add_common_options(command, options->common);
+    command.runs([options] {
+        options->experiment = (data_root() / "experiments" / "first_light.toml").string();
+        return run(*options);
+    });
 }
 
 }  // namespace lensproof::cli

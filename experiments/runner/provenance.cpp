@@ -11,6 +11,7 @@ extern "C" {
 #include <sha2.h>
 }
 
+#include "engine/base/data_root.h"
 #include "engine/base/file.h"
 
 namespace lensproof::runner {
@@ -46,6 +47,10 @@ std::string program_version() {
     return LENSPROOF_VERSION;
 }
 
+std::string compiler_version() {
+    return LENSPROOF_COMPILER;
+}
+
 std::string library_versions() {
     return LENSPROOF_LIBRARIES;
 }
@@ -60,7 +65,7 @@ std::string sha256(const fs::path& file) {
 std::string source_commit() {
     const fs::path git = data_root() / ".git";
     if (!fs::exists(git / "HEAD")) {
-        return "unknown";
+        return fs::exists(data_root() / "commit") ? first_line(data_root() / "commit") : "unknown";
     }
     std::string head = first_line(git / "HEAD");
     const std::string prefix = "ref: ";

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "engine/base/data_root.h"
 #include "engine/base/file.h"
 #include "tests/cli/program.h"
 #include "tests/cli/trace_table.h"
@@ -17,8 +18,10 @@ namespace lensproof::command_line_test {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> kCommands = {"check",   "convert", "trace", "ghosts", "render",  "merge",   "measure",
-                                            "compare", "export",  "run",   "lenses", "glasses", "coatings"};
+const std::vector<std::string> kCommands = {"demo",     "check",      "convert",  "analyze", "trace",  "ghosts",
+                                            "render",   "merge",      "chart",    "measure", "fit",    "compare",
+                                            "export",   "run",        "tradeoff", "plan",    "lenses", "glasses",
+                                            "coatings", "completion", "manual"};
 
 std::string rays_text() {
     return std::string(kRayHeader) + kAxialRay + "b,0,19,-10,0,0,1,486.1327\nc,0,40,-10,0,0,1,587.5618\n";
@@ -46,9 +49,10 @@ TEST(Version, SaysCommitAndLibraries) {
     for (const char* library : {"OpenCV", "Ceres", "OpenImageIO", "OpenEXR", "Embree", "Eigen", "assimp"}) {
         numbered += (numbered.empty() ? "" : ", ") + std::string(library) + R"( [0-9]+(\.[0-9]+)+)";
     }
-    EXPECT_TRUE(std::regex_match(
-        version.out,
-        std::regex("lensproof [0-9]+(\\.[0-9]+)+\ncommit ([0-9a-f]{40}|unknown)\nbuilt against " + numbered + "\n")))
+    EXPECT_TRUE(
+        std::regex_match(version.out, std::regex("lensproof [0-9]+(\\.[0-9]+)+\ncommit ([0-9a-f]{40}|unknown)\nbuilt "
+                                                 "by [A-Za-z]+ [0-9]+(\\.[0-9]+)+ against " +
+                                                 numbered + "\n")))
         << version.out;
 }
 
