@@ -91,7 +91,7 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_of(const scene::CharucoBoard& board, s
 
 std::vector<Marker> find_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary,
                                  const std::vector<cv::Point2d>& centres) {
-    auto tuning = cv::aruco::DetectorParameters::create();
+    auto tuning = cv::makePtr<cv::aruco::DetectorParameters>();
     tuning->minMarkerPerimeterRate = 0.02;
     tuning->adaptiveThreshWinSizeMax = 53;
     std::vector<std::vector<cv::Point2f>> corners;

@@ -197,7 +197,7 @@ WaveCurves wave_curves(const optics::Lens& lens, const AnalysisSettings& setting
         field_mtf(diffraction_mtf(*axis, frequencies, MtfKind::diffraction_limited), 0.0).tangential;
     const double axial_radius = 0.5 * cosine_box(*axis, axis->parts.front()).width();
     AnalysisSettings at_reference = settings;
-    at_reference.wavelengths_nm = {settings.reference_wavelength_nm};
+    at_reference.wavelengths_nm.assign(1, settings.reference_wavelength_nm);
     const auto reference_fields = polychromatic_fields(lens, at_reference);
     const auto fields = polychromatic_fields(lens, settings);
     curves.wavefronts.resize(fields.size());

@@ -42,7 +42,7 @@ struct Query {
 };
 
 Query& query_of(embree::Context* context) {
-    return *reinterpret_cast<Query*>(context);
+    return *static_cast<Query*>(static_cast<void*>(context));
 }
 
 std::optional<Meeting> meet_analytic(const PlacedObject& placed, const Stretch& ray) {
