@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""cluster_test.py PROGRAM SOURCE [--shards N] — renders and sweeps on workers that die.
+
+A `LocalCluster` of two workers; one task in ten has its worker killed under it. The picture has the bytes that the same
+shards have when nobody dies. Exits with 77, which counts as skipped, where Dask's `distributed` is not installed.
+"""
+import json
+import os
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+try:
+    import distributed
+except ImportError:
+    print("distributed is not installed here (Debian: python3-distributed)")
+    sys.exit(77)
+
+PROGRAM, SOURCE = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
+SHARDS = int(sys.argv[4]) if sys.argv[3:4] == ["--shards"] else 16
+os.environ["LENSPROOF_PROGRAM"] = str(PROGRAM)
+os.environ["LENSPROOF_CACHE"] = "off"
+# The workers' processes import it too; the package around it needs what pip builds.
+package = str(SOURCE / "experiments/python/lensproof")
+sys.path.insert(0, package)
+os.environ["PYTHONPATH"] = package
+import cluster  # noqa: E402
+
+SCENE = """
+[camera]
+lens = "tessar"
+f_number = 4.0
+focus_distance_mm = 2000.0
+sensor_mm = [72.0, 54.0]
+pixels = [40, 30]
+shutter_s = 0.01
+iso = 100.0
+response = "camera"
+[light]
+illuminant = "D65"
+luminance_cd_m2 = 1000.0
+[chart]
+kind = "checkerboard"
+squares = [12, 9]
+square_mm = 110.0
+[pose]
+distance_mm = 2000.0
+"""
+
+
+class Killer:
+    """Kills a worker under every tenth task, at random, as `tasks` are done."""
+
+    def __init__(self, client, tasks):
+        self.client = client
+        self.at = set(random.Random(1).sample(range(tasks), max(1, tasks // 10)))
+        self.killed = 0
+
+    def __call__(self, done, total, seconds_left):
+        if done in self.at:
+            self.at.remove(done)
+            threading.Timer(0.05, self.kill).start()
+
+    def kill(self):
+        busy = [address for address, keys in self.client.processing().items() if keys]
+        for address in busy[:1]:
+            pid = self.client.run(os.getpid, workers=[address])[address]
+            subprocess.run(["kill", "-9", str(pid)], check=False)
+            self.killed += 1
+
+
+class Cluster(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="lensproof-cluster-")))
+        cls.local = cls.enterClassContext(distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50,
+            local_directory=str(cls.folder / "workers")))
+        cls.client = cls.enterClassContext(distributed.Client(cls.local))
+        (cls.folder / "scene.toml").write_text(SCENE)
+
+    def test_pictures_have_the_same_bytes_whoever_dies(self):
+        options = ["--spp", str(16 * SHARDS), "--threads", "1"]
+        killer = Killer(self.client, SHARDS)
+        picture = cluster.render(self.folder / "scene.toml", self.folder / "picture.exr", self.client, SHARDS, options,
+                                 progress=killer)
+        self.assertGreater(killer.killed, 0)
+        unbroken = cluster.render_task(self.folder / "scene.toml", self.folder / "unbroken", SHARDS, options)
+        for task in cluster.needed([unbroken]):
+            cluster.perform(task)
+        self.assertEqual(picture.read_bytes(), unbroken.result.read_bytes())
+        self.assertEqual(picture.with_suffix(".png").read_bytes(), unbroken.result.with_suffix(".png").read_bytes())
+        self.assertEqual(list(self.folder.glob("picture.parts-*")), [], "what the picture was made of is gone")
+
+    def test_a_task_goes_on_from_the_checkpoint_of_one_that_was_killed(self):
+        samples = 8192
+        whole = cluster.render_task(self.folder / "scene.toml", self.folder / "killed", 1,
+                                    ["--spp", str(samples), "--threads", "1", "--checkpoint-interval", "0.2"])
+        part = whole.after[0]
+        part.result.parent.mkdir()
+        process = subprocess.Popen([PROGRAM, *part.arguments])
+        while not part.checkpoint.exists() and process.poll() is None:
+            time.sleep(0.01)
+        process.kill()
+        process.wait()
+        self.assertFalse(part.is_done())
+        arguments = (*part.arguments, "--json", str(self.folder / "went_on.json"))
+        cluster.perform(cluster.Task(arguments, part.result, checkpoint=part.checkpoint))
+        went_on = json.loads((self.folder / "went_on.json").read_text())["run"]
+        self.assertLess(went_on["samples"], samples * 40 * 30)
+        self.assertFalse(part.checkpoint.exists())
+
+    def test_sweeps_answer_in_order_and_are_kept(self):
+        killer = Killer(self.client, 20)
+        f_numbers = [2.8 + 0.5 * step for step in range(20)]
+        commands = [["analyze", "tessar", "--f-number", str(n), "--fields", "0"] for n in f_numbers]
+        answers = cluster.sweep(commands, self.folder / "sweep", self.client, progress=killer)
+        for f_number, answer in zip(f_numbers, answers):
+            self.assertAlmostEqual(answer["paraxial"]["f_number"], f_number, places=9)
+        done = []
+        self.assertEqual(cluster.sweep(commands, self.folder / "sweep", self.client,
+                                       progress=lambda *told: done.append(told)), answers)
+        self.assertEqual(len(done), 1, "nothing is done again")
+
+    def test_what_no_other_try_changes_ends_at_once(self):
+        with self.assertRaises(cluster.TaskFailed) as failed:
+            cluster.sweep([["analyze", "no-such-lens"]], self.folder / "wrong", self.client)
+        self.assertEqual(failed.exception.status, cluster.UNUSABLE_INPUT)
+        self.assertIn("no-such-lens", str(failed.exception))
+
+    def test_a_slurm_array_goes_on_from_its_checkpoint(self):
+        """The array's script as Slurm would start it, with a `scontrol` that only notes what it is asked."""
+        tools = self.folder / "tools"
+        tools.mkdir()
+        (tools / "scontrol").write_text('#!/bin/sh\necho "$@" >> "$(dirname "$0")/asked"\n')
+        (tools / "scontrol").chmod(0o755)
+        (tools / "lensproof").symlink_to(PROGRAM)
+        environment = os.environ | {
+            "PATH": f"{tools}:{os.environ['PATH']}", "LENSPROOF_HOME": str(SOURCE), "SLURM_JOB_ID": "7",
+            "SLURM_ARRAY_TASK_ID": "1", "SLURM_ARRAY_TASK_COUNT": "1"}
+        command = ["bash", SOURCE / "experiments/render_array.sbatch", "scene.toml", "array.exr", "--spp", "8192",
+                   "--threads", "1", "--checkpoint-interval", "0.2"]
+        task = subprocess.Popen(command, cwd=self.folder, env=environment)
+        checkpoint = self.folder / "array.part-1.checkpoint"
+        while not checkpoint.exists() and task.poll() is None:
+            time.sleep(0.01)
+        task.terminate()
+        self.assertEqual(task.wait(), 0)
+        self.assertEqual((tools / "asked").read_text(), "requeue 7\n")
+        self.assertTrue(checkpoint.exists())
+        subprocess.run(command, cwd=self.folder, env=environment, check=True)
+        self.assertTrue((self.folder / "array.part-1.exr").exists())
+        self.assertEqual(list(self.folder.glob("array*.checkpoint*")), [])
+
+    def test_the_command_line(self):
+        status = cluster.main(["render", str(self.folder / "scene.toml"), "-o", str(self.folder / "two.exr"), "--shards",
+                               "2", "--spp", "32", "--scheduler", self.local.scheduler_address])
+        self.assertEqual(status, 0)
+        self.assertTrue((self.folder / "two.exr").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
