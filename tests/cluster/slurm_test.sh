@@ -23,6 +23,7 @@ cleanup() {
     rm -rf "$folder"
 }
 trap cleanup EXIT
+trap 'exit 1' INT TERM
 
 if ! munge -n >/dev/null 2>&1; then
     mkdir -p /run/munge
@@ -59,11 +60,11 @@ slurmd
 until sinfo -h -o %t | grep -q idle; do sleep 0.5; done
 
 cd "$folder"
-scene=$source/experiments/scenes/cornell_box_petzval.toml
+scene=$source/experiments/scenes/tessar_checkerboard.toml
 options=(--spp $((16 * shards)) --threads 1 --checkpoint-interval 0.5)
 array=$(sbatch --parsable --array="1-$shards" "$source/experiments/render_array.sbatch" "$scene" picture.exr "${options[@]}")
 merge=$(sbatch --parsable --dependency="afterok:$array" --wrap 'lensproof merge picture.part-*.exr -o picture.exr --quiet')
-sleep 8
+until [[ -n $(squeue -h -t R) ]]; do sleep 0.2; done
 scontrol requeue "$(squeue -h -t R -o %i | head -1)" && echo "one task queued again"
 killed=0
 while squeue -h -j "$array" | grep -q .; do
@@ -71,10 +72,10 @@ while squeue -h -j "$array" | grep -q .; do
         # Slurm sees a task that failed; its owner queues it again.
         job=$(tr '\0' '\n' < "/proc/$victim/environ" 2>/dev/null | sed -n 's/^SLURM_JOB_ID=//p')
         kill -9 "$victim" 2>/dev/null && killed=$((killed + 1))
-        sleep 0.5
-        scontrol requeue "$job" || true
+        sleep 0.2
+        scontrol requeue "$job" 2>/dev/null || true
     fi
-    sleep 2
+    sleep 1
 done
 while squeue -h -j "$merge" | grep -q .; do sleep 1; done
 
