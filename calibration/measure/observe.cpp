@@ -1,13 +1,18 @@
 #include "calibration/measure/observe.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <thread>
+#include <utility>
 
 #include "calibration/detection/detect.h"
 #include "calibration/detection/refine.h"
 #include "calibration/detection/working_copy.h"
 #include "calibration/picture/picture_quality.h"
+#include "engine/base/confined.h"
 #include "engine/base/hash.h"
+#include "engine/base/parallel.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -27,21 +32,40 @@ std::string joined(const std::vector<std::string>& words) {
     return text;
 }
 
-void check_alike(const Observations& seen, const formats::Image& image, const std::string& name) {
-    const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height); };
+// What one picture shows by itself, whatever the others do.
+struct Look {
+    PictureObservation own;
+    int width = 0;  // 0 where it could not be loaded
+    int height = 0;
+    std::vector<std::string> channels;
+    bool grey = true;
+    SharpnessObservations sharpness;
+};
+
+std::string size_in_words(int width, int height) {
+    return std::to_string(width) + " × " + std::to_string(height);
+}
+
+void check_pixels(const formats::Image& image, const std::string& name) {
     if (image.width < 1 || image.height < 1 || image.channels.empty() ||
         image.pixels.size() != static_cast<std::size_t>(image.width) * image.height * image.channels.size()) {
-        throw InputError(name + ": the picture is " + size(image.width, image.height) + " with " +
+        throw InputError(name + ": the picture is " + size_in_words(image.width, image.height) + " with " +
                          std::to_string(image.channels.size()) + " channels: expected pixels");
     }
-    if (seen.width != 0 && (image.width != seen.width || image.height != seen.height)) {
-        throw InputError(name + ": the picture is " + size(image.width, image.height) + " pixels: expected " +
-                         size(seen.width, seen.height) + " like the pictures before it");
+}
+
+// Why the picture does not go with those before it; empty where it does.
+std::string unlike_those_before(const Observations& seen, const Look& look) {
+    if (seen.width != 0 && (look.width != seen.width || look.height != seen.height)) {
+        return "the picture is " + size_in_words(look.width, look.height) + " pixels: expected " +
+               size_in_words(seen.width, seen.height) + " like the pictures before it";
     }
-    if (!seen.channels.empty() && image.channels != seen.channels) {
-        throw InputError(name + ": the picture has the channels " + joined(image.channels) + ": expected " +
-                         joined(seen.channels) + " like the pictures before it");
+    if (!seen.channels.empty() && look.channels != seen.channels) {
+        return "the picture has the channels " + joined(look.channels) + ": expected " + joined(seen.channels) +
+               " like the pictures before it";
     }
+    const auto same = std::ranges::find(seen.pictures, look.own.pixels_hash, &PictureObservation::pixels_hash);
+    return same != seen.pictures.end() ? "the same picture as " + same->account.image : "";
 }
 
 // Why what was refined does not do; empty where it does.
@@ -55,8 +79,9 @@ std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
 }
 
 // What the fits keep of a chart that was found: its points, and what each channel shows there.
-void observe_channels(Observations& seen, PictureObservation& own, const formats::Image& image, const Picture& picture,
-                      const MeasureInput& input, const ChartPoints& points) {
+void observe_channels(Look& look, const formats::Image& image, const Picture& picture, const MeasureInput& input,
+                      const ChartPoints& points) {
+    PictureObservation& own = look.own;
     const scene::Chart& chart = input.chart;
     const int reference = reference_channel(image);
     const std::vector<Vec2d> features = scene::feature_points(chart);
@@ -77,7 +102,7 @@ void observe_channels(Observations& seen, PictureObservation& own, const formats
             own.light[channel_name] = chart_white_samples(image, channel, points, chart);
         }
         if (input.with_sharpness && (channel == reference || !grey)) {
-            observe_chart_edges(seen.sharpness, image, channel, picture.name, points, chart);
+            observe_chart_edges(look.sharpness, image, channel, picture.name, points, chart);
         }
         if (channel == reference || grey) {
             continue;
@@ -91,8 +116,8 @@ void observe_channels(Observations& seen, PictureObservation& own, const formats
     }
 }
 
-void observe_chart(Observations& seen, PictureObservation& own, const formats::Image& image, const Picture& picture,
-                   const MeasureInput& input) {
+void observe_chart(Look& look, const formats::Image& image, const Picture& picture, const MeasureInput& input) {
+    PictureObservation& own = look.own;
     const scene::Chart& chart = input.chart;
     ProfileView& view = own.view.emplace();
     PictureAccount& account = own.account;
@@ -122,11 +147,11 @@ void observe_chart(Observations& seen, PictureObservation& own, const formats::I
     view.numbering = numbering_key(detection.numbering);
     const std::string open = numbering_in_words(detection.numbering);
     account.reason += (account.reason.empty() || open.empty() ? "" : "; ") + open;
-    observe_channels(seen, own, image, picture, input, points);
+    observe_channels(look, image, picture, input, points);
 }
 
-// The picture, checked against those before it. Throws InputError for one that is not to be used.
-formats::Image load(const Observations& seen, const Picture& picture) {
+// Throws InputError for a picture that is not to be used.
+formats::Image load(const Picture& picture) {
     if (!picture.left_out.empty()) {
         throw InputError(picture.left_out);
     }
@@ -134,7 +159,7 @@ formats::Image load(const Observations& seen, const Picture& picture) {
         throw InputError("the picture cannot be loaded");
     }
     formats::Image image = picture.load();
-    check_alike(seen, image, picture.name);
+    check_pixels(image, picture.name);
     return image;
 }
 
@@ -161,34 +186,30 @@ std::vector<int> channels_that_differ(const formats::Image& image) {
     return channels;
 }
 
-void observe_picture(Observations& seen, PictureObservation& own, const Picture& picture, const MeasureInput& input) {
-    const formats::Image image = load(seen, picture);
-    const std::string hash = hash_of_pixels(image);
-    const auto same = std::ranges::find(seen.pictures, hash, &PictureObservation::pixels_hash);
-    if (same != seen.pictures.end()) {
-        throw InputError("the same picture as " + same->account.image);
-    }
-    own.pixels_hash = hash;
+void observe_picture(Look& look, const Picture& picture, const MeasureInput& input) {
+    const formats::Image image = load(picture);
+    PictureObservation& own = look.own;
+    own.pixels_hash = hash_of_pixels(image);
     PictureAccount& account = own.account;
-    seen.width = image.width;
-    seen.height = image.height;
-    seen.channels = image.channels;
-    seen.grey = seen.grey && all_channels_alike(image);
+    look.width = image.width;
+    look.height = image.height;
+    look.channels = image.channels;
+    look.grey = all_channels_alike(image);
     if (const auto* star = std::get_if<scene::SiemensStar>(&input.chart.pattern);
         star != nullptr && picture.role == PictureRole::chart) {
         for (const int channel : channels_that_differ(image)) {
-            observe_stars(seen.sharpness, image, channel, picture.name, *star);
+            observe_stars(look.sharpness, image, channel, picture.name, *star);
         }
         account.used = true;
         account.reason = picture.remark;
         return;
     }
     if (picture.role == PictureRole::chart) {
-        observe_chart(seen, own, image, picture, input);
+        observe_chart(look, image, picture, input);
         return;
     }
     if (picture.role == PictureRole::edges && input.edges.empty()) {
-        own.chromatic_pairs = observe_any_edges(seen.sharpness, image, channels_that_differ(image),
+        own.chromatic_pairs = observe_any_edges(look.sharpness, image, channels_that_differ(image),
                                                 reference_channel(image), picture.name);
         account.used = true;
         account.reason = picture.remark;
@@ -196,7 +217,7 @@ void observe_picture(Observations& seen, PictureObservation& own, const Picture&
     }
     if (picture.role == PictureRole::edges) {
         for (const int channel : channels_that_differ(image)) {
-            observe_edges(seen.sharpness, image, channel, picture.name, input.edges);
+            observe_edges(look.sharpness, image, channel, picture.name, input.edges);
         }
         account.used = true;
         return;
@@ -206,6 +227,75 @@ void observe_picture(Observations& seen, PictureObservation& own, const Picture&
     }
     account.used = picture.use_light;
     account.reason = picture.remark;
+}
+
+PictureObservation not_looked_at(const Picture& picture) {
+    PictureObservation own;
+    own.account = {.image = picture.name,
+                   .role = role_name(picture.role),
+                   .used = false,
+                   .reason = {},
+                   .orientation = picture.orientation};
+    return own;
+}
+
+void leave_out(PictureObservation& own, const Picture& picture, const MeasureInput& input, const std::string& reason) {
+    own.account.reason = reason;
+    if (picture.role == PictureRole::chart && !shows_star(input)) {
+        own.view = ProfileView{.image = picture.name, .reason = reason, .traits = {}, .pose = {}, .points = {}};
+    }
+}
+
+Look look_at(const Picture& picture, const MeasureInput& input) {
+    Look look{.own = not_looked_at(picture), .channels = {}, .sharpness = {}};
+    try {
+        observe_picture(look, picture, input);
+    } catch (const InputError& e) {
+        leave_out(look.own, picture, input, without_name(e.what(), picture.name));
+    }
+    return look;
+}
+
+void add(SharpnessObservations& all, SharpnessObservations& own) {
+    const auto append = [](auto& to, auto& from) {
+        for (auto& [channel, list] : from) {
+            auto& known = to[channel];
+            std::ranges::move(list, std::back_inserter(known));
+        }
+    };
+    append(all.edges, own.edges);
+    append(all.stars, own.stars);
+    for (const auto& [reason, count] : own.refusals) {
+        all.refusals[reason] += count;
+    }
+}
+
+void take(Observations& seen, Look look, const Picture& picture, const MeasureInput& input) {
+    const bool is_loaded = look.width > 0;
+    if (const std::string reason = is_loaded ? unlike_those_before(seen, look) : ""; !reason.empty()) {
+        look.own = not_looked_at(picture);
+        leave_out(look.own, picture, input, reason);
+    } else if (is_loaded) {
+        seen.width = look.width;
+        seen.height = look.height;
+        seen.channels = look.channels;
+        seen.grey = seen.grey && look.grey;
+        add(seen.sharpness, look.sharpness);
+    }
+    seen.pictures.push_back(std::move(look.own));
+}
+
+// How many pictures of a size are looked at at once: those of a cheap camera on all cores, of a large one fewer.
+int at_once(const Observations& seen, int threads) {
+    if (files_are_distrusted()) {  // each is decoded in a process of its own, which is made where no thread holds a
+                                   // lock
+        return 1;
+    }
+    constexpr double kMostPixels = 1e8;  // some 4 GB
+    const double pixels = std::max(1.0, static_cast<double>(seen.width) * seen.height);
+    const int affordable = static_cast<int>(std::clamp(kMostPixels / pixels, 1.0, 1024.0));
+    return threads > 0 ? std::min(threads, affordable)
+                       : std::min(affordable, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
 }
 
 }  // namespace
@@ -225,27 +315,28 @@ bool looks_for_charts(const Observations& seen) {
 Observations observe(const MeasureInput& input) {
     Observations seen;
     seen.sharpness.focus_position_mm = input.focus_position_mm;
-    for (const Picture& picture : input.pictures) {
-        if (input.progress) {
-            input.progress(static_cast<double>(seen.pictures.size()) / static_cast<double>(input.pictures.size()));
+    const int count = static_cast<int>(input.pictures.size());
+    const auto tell = [&](int finished) {
+        if (input.progress && finished < count) {
+            input.progress(static_cast<double>(finished) / count);
         }
-        const bool is_chart = picture.role == PictureRole::chart && !shows_star(input);
-        PictureObservation own;
-        own.account = {.image = picture.name,
-                       .role = role_name(picture.role),
-                       .used = false,
-                       .reason = {},
-                       .orientation = picture.orientation};
-        try {
-            observe_picture(seen, own, picture, input);
-        } catch (const InputError& e) {
-            own.account.reason = without_name(e.what(), picture.name);
-            if (is_chart) {
-                own.view = ProfileView{
-                    .image = picture.name, .reason = own.account.reason, .traits = {}, .pose = {}, .points = {}};
-            }
-        }
-        seen.pictures.push_back(std::move(own));
+    };
+    const auto& pictures = input.pictures;
+    int first = 0;
+    for (; first < count && seen.width == 0; ++first) {  // until one says how large they are
+        tell(first);
+        take(seen, look_at(pictures[static_cast<std::size_t>(first)], input), pictures[static_cast<std::size_t>(first)],
+             input);
+    }
+    std::vector<Look> looks(static_cast<std::size_t>(count - first));
+    parallel_for(
+        count - first, at_once(seen, input.threads),
+        [&](int i) {
+            looks[static_cast<std::size_t>(i)] = look_at(pictures[static_cast<std::size_t>(first + i)], input);
+        },
+        [&](int finished) { tell(first + finished); });
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        take(seen, std::move(looks[i]), pictures[static_cast<std::size_t>(first) + i], input);
     }
     return seen;
 }

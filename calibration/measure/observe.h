@@ -38,7 +38,7 @@ struct Observations {
     SharpnessObservations sharpness;
 };
 
-/// Loads the pictures one by one and looks for what each is to show. One that does not do is left out, with the reason
+/// Loads the pictures, as many at once as threads and memory allow, and looks for what each is to show. One that does not do is left out, with the reason
 /// in its account and, where it should show a chart, in its view; nothing is thrown for it.
 Observations observe(const MeasureInput& input);
 

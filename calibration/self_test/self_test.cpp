@@ -47,7 +47,7 @@ struct PhotoTraits {
     bool is_grey = false;
 };
 
-SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, const PhotoTraits& photo) {
+SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, const PhotoTraits& photo, int threads) {
     SimulatedCamera camera{.model = profile.geometry->model,
                            .width_px = profile.width_px,
                            .height_px = profile.height_px,
@@ -58,7 +58,7 @@ SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, c
                            .shot_noise = 0.0,
                            .is_grey = photo.is_grey,
                            .jpeg_quality = {},
-                           .threads = 0,
+                           .threads = threads,
                            .board = profile.geometry->board,
                            .light_gradient_per_mm = traits.light_gradient_per_mm.value_or(Vec2d{})};
     if (profile.channels.size() == 1 || profile.channels.size() == 3) {  // what a JPEG holds
@@ -77,8 +77,8 @@ SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, c
 
 // A flat field has its own exposure and noise, those of its own picture.
 SimulatedCamera flat_field_camera(const Profile& profile, const PictureTraits& charts, const Picture& picture,
-                                  bool is_grey) {
-    SimulatedCamera camera = camera_of(profile, charts, {picture.jpeg_quality, is_grey});
+                                  bool is_grey, int threads) {
+    SimulatedCamera camera = camera_of(profile, charts, {picture.jpeg_quality, is_grey}, threads);
     const formats::Image image = picture.load();
     const FlatFieldTraits own = flat_field_traits(image, reference_channel(image));
     if (own.white > 0.0) {
@@ -136,14 +136,15 @@ std::vector<Picture> simulated_pictures(const MeasureInput& input, const Profile
         last = *view->traits;
         pictures.push_back(
             {view->image, PictureRole::chart,
-             [camera = camera_of(profile, last, {quality_of(input, view->image), is_grey}), pose = *view->pose,
-              chart = chart_of(input.chart, last), seed] { return simulate_chart(camera, pose, chart, seed); }});
+             [camera = camera_of(profile, last, {quality_of(input, view->image), is_grey}, input.threads),
+              pose = *view->pose, chart = chart_of(input.chart, last),
+              seed] { return simulate_chart(camera, pose, chart, seed); }});
         ++seed;
     }
     for (const Picture& picture : input.pictures) {
         if (picture.role == PictureRole::flat_field && !pictures.empty() && is_used(profile, picture)) {
             pictures.push_back({picture.name, PictureRole::flat_field,
-                                [camera = flat_field_camera(profile, last, picture, is_grey), seed] {
+                                [camera = flat_field_camera(profile, last, picture, is_grey, input.threads), seed] {
                                     return simulate_flat_field(camera, seed);
                                 }});
             ++seed;

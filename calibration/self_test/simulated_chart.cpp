@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <random>
 
@@ -66,26 +67,69 @@ std::optional<Vec2d> chart_point(const Vec3d& direction, const Pose& pose, const
     return place;
 }
 
+// A channel's light along the radius, looked up, because it is asked for every pixel: straight between 4096 places a
+// half-diagonal, which is off by 1e-8 of the second derivative.
+class RadialLight {
+  public:
+    /// Up to `farthest` px.
+    RadialLight(const SimulatedChannel& channel, double white, double half_diagonal, double farthest)
+        : steps_per_px_(kSteps / half_diagonal) {
+        const int count = static_cast<int>(std::ceil(farthest * steps_per_px_)) + 2;
+        light_.reserve(static_cast<std::size_t>(count));
+        for (int i = 0; i < count; ++i) {
+            light_.push_back(white * channel.vignetting(i / kSteps));
+        }
+    }
+
+    /// Beyond the farthest radius as there.
+    [[nodiscard]] double at(double radius_px) const {
+        const double place = std::min(radius_px * steps_per_px_, static_cast<double>(light_.size() - 2));
+        const auto before = static_cast<std::size_t>(place);
+        return std::lerp(light_[before], light_[before + 1], place - static_cast<double>(before));
+    }
+
+  private:
+    static constexpr double kSteps = 4096.0;
+
+    double steps_per_px_;
+    std::vector<double> light_;
+};
+
 struct Frame {
     const SimulatedCamera& camera;
     double half_diagonal;
     Vec2d centre;
     FieldAngles angles;
+    std::vector<RadialLight> lights;  // of each channel that is made
 
-    [[nodiscard]] double light(const SimulatedChannel& channel, int x, int y) const {
-        return camera.white * channel.vignetting(std::hypot(x - centre.x, y - centre.y) / half_diagonal);
+    [[nodiscard]] double light(int channel, int x, int y) const {
+        const double dx = x - centre.x;
+        const double dy = y - centre.y;
+        return lights[static_cast<std::size_t>(channel)].at(std::sqrt(dx * dx + dy * dy));
     }
 };
+
+// Of a grey picture all channels but the first are copies.
+int made_channels(const SimulatedCamera& camera) {
+    return camera.is_grey ? 1 : static_cast<int>(camera.channels.size());
+}
 
 Frame frame_of(const SimulatedCamera& camera) {
     // A principal point may lie anywhere, a stretched picture reach farther, and a band's knots beyond the frame.
     const Vec2d centre = centre_px(camera.model);
-    const double farthest =
-        std::hypot(std::max(centre.x, camera.width_px - centre.x), std::max(centre.y, camera.height_px - centre.y)) /
-            std::min(1.0, 1.0 + stretch_y(camera.model)) +
-        16.0 * camera.blur_px + 64.0;
-    return {camera, 0.5 * std::hypot(camera.width_px, camera.height_px), centre,
-            FieldAngles(camera.model, std::min(farthest, kFarthestRadius_px))};
+    const double corner =
+        std::hypot(std::max(centre.x, camera.width_px - centre.x), std::max(centre.y, camera.height_px - centre.y));
+    const double farthest = corner / std::min(1.0, 1.0 + stretch_y(camera.model)) + 16.0 * camera.blur_px + 64.0;
+    Frame frame{.camera = camera,
+                .half_diagonal = 0.5 * std::hypot(camera.width_px, camera.height_px),
+                .centre = centre,
+                .angles = FieldAngles(camera.model, std::min(farthest, kFarthestRadius_px)),
+                .lights = {}};
+    for (int c = 0; c < made_channels(camera); ++c) {
+        frame.lights.emplace_back(camera.channels[c], camera.white, frame.half_diagonal,
+                                  std::min(corner, kFarthestRadius_px));
+    }
+    return frame;
 }
 
 // Directions are mapped knot by knot; in a cell of four knots bilinearly.
@@ -283,6 +327,45 @@ struct Part {
     }
 };
 
+// What each sub-pixel along a line, from the first that the blur reaches, gives to a pixel: the blur's Gaussian, and
+// the mean over the pixel's own.
+std::vector<float> blur_and_box(double blur_px) {
+    const double sigma = blur_px * kSubpixels;
+    const int reach = static_cast<int>(std::ceil(kBlurReach * sigma));
+    const cv::Mat gaussian =
+        blur_px > 0.0 ? cv::getGaussianKernel(2 * reach + 1, sigma, CV_64F) : cv::Mat::ones(1, 1, CV_64F);
+    std::vector<float> weights(static_cast<std::size_t>(gaussian.rows + kSubpixels - 1));
+    for (int i = 0; i < gaussian.rows; ++i) {
+        for (int j = 0; j < kSubpixels; ++j) {
+            weights[static_cast<std::size_t>(i + j)] += static_cast<float>(gaussian.at<double>(i) / kSubpixels);
+        }
+    }
+    return weights;
+}
+
+// The part's pixels from the sub-pixels of them and of the margin around: first down the columns, for all of a row at
+// once, then along what is left. Only what arrives in a pixel is summed, a sixth of what a blur of all sub-pixels sums.
+cv::Mat pixels_of(const cv::Mat& fine, const std::vector<float>& weights, const Part& part) {
+    const int count = static_cast<int>(weights.size());
+    const int before = part.margin * kSubpixels - (count - kSubpixels) / 2;  // sub-pixels that no pixel's sum reaches
+    std::vector<float> line(static_cast<std::size_t>(fine.cols));
+    cv::Mat pixels(part.pixels.height, part.pixels.width, CV_32F);
+    for (int y = 0; y < pixels.rows; ++y) {
+        std::ranges::fill(line, 0.0F);
+        for (int k = 0; k < count; ++k) {
+            const float* row = fine.ptr<float>(before + y * kSubpixels + k);
+            for (std::size_t i = 0; i < line.size(); ++i) {
+                line[i] += weights[static_cast<std::size_t>(k)] * row[i];
+            }
+        }
+        for (int x = 0; x < pixels.cols; ++x) {
+            const float* first = &line[static_cast<std::size_t>(before + x * kSubpixels)];
+            pixels.at<float>(y, x) = std::inner_product(weights.begin(), weights.end(), first, 0.0F);
+        }
+    }
+    return pixels;
+}
+
 // The reflectance of each pixel, by the light on the chart, blurred.
 cv::Mat blurred(const Part& part) {
     const int columns = part.pixels.width + 2 * part.margin;
@@ -298,14 +381,7 @@ cv::Mat blurred(const Part& part) {
             }
         }
     }
-    if (part.frame.camera.blur_px > 0.0) {
-        const double sigma = part.frame.camera.blur_px * kSubpixels;
-        const int side = 2 * static_cast<int>(std::ceil(kBlurReach * sigma)) + 1;
-        cv::GaussianBlur(fine, fine, {side, side}, sigma, sigma, cv::BORDER_REPLICATE);
-    }
-    cv::Mat pixels;
-    cv::resize(fine, pixels, {columns, rows}, 0.0, 0.0, cv::INTER_AREA);  // means of whole blocks
-    return pixels(cv::Rect(part.margin, part.margin, part.pixels.width, part.pixels.height));
+    return pixels_of(fine, blur_and_box(part.frame.camera.blur_px), part);
 }
 
 // The same where no edge is near: blur changes nothing, nor does it the light, which is smooth.
@@ -340,16 +416,11 @@ void paint_band(formats::Image& image, int channel, int first, int last, const F
         const cv::Mat pixels = tone ? of_one_tone(part, *tone) : blurred(part);
         for (int y = 0; y < pixels.rows; ++y) {
             for (int x = 0; x < pixels.cols; ++x) {
-                image.at(left + x, first + y, channel) = static_cast<float>(
-                    pixels.at<float>(y, x) * frame.light(camera.channels[channel], left + x, first + y));
+                image.at(left + x, first + y, channel) =
+                    static_cast<float>(pixels.at<float>(y, x) * frame.light(channel, left + x, first + y));
             }
         }
     }
-}
-
-// Of a grey picture all channels but the first are copies.
-int made_channels(const SimulatedCamera& camera) {
-    return camera.is_grey ? 1 : static_cast<int>(camera.channels.size());
 }
 
 void copy_first_channel(formats::Image& image) {
@@ -421,7 +492,7 @@ formats::Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t 
     parallel_for(camera.height_px, camera.threads, [&](int y) {
         for (int x = 0; x < camera.width_px; ++x) {
             for (int c = 0; c < made_channels(camera); ++c) {
-                image.at(x, y, c) = static_cast<float>(frame.light(camera.channels[c], x, y));
+                image.at(x, y, c) = static_cast<float>(frame.light(c, x, y));
             }
         }
     });

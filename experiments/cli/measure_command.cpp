@@ -149,6 +149,7 @@ calibration::MeasureInput measure_input(const MeasureOptions& options, const cal
     input.chart = chart;
     input.model = calibration::model_kind(options.model);  // none for "auto"
     input.source = source;
+    input.threads = options.common.threads;
     input.geometry.fit_board_shape = options.fit_board_shape;
     input.geometry.fit_stretch = options.aspect == "free";
     input.geometry.fix_centre = options.fix_centre;

@@ -110,7 +110,8 @@ MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings&
                                     .model = photos.model,
                                     .geometry = {},
                                     .source = {.kind = "photo", .images = {}, .camera = set.camera, .lens = set.lens},
-                                    .pixel_pitch_um = set.pixel_pitch_um};
+                                    .pixel_pitch_um = set.pixel_pitch_um,
+                                    .threads = settings.threads};
     calibration::take_survey(input, calibration::survey_photos(set.photos, set.flat_fields, std::nullopt));
     for (std::size_t i = 0; i < set.focus_positions_mm.size(); ++i) {
         input.focus_position_mm[set.photos[i].string()] = set.focus_positions_mm[i];

@@ -207,7 +207,8 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
         .model = simulation.model,
         .geometry = {.fit_tangential = false},  // a centred lens
         .source = {.kind = "render", .images = {}, .camera = "simulated", .lens = measured.subject.label},
-        .pixel_pitch_um = 1e3 * camera.sensor().pixel_pitch_mm};
+        .pixel_pitch_um = 1e3 * camera.sensor().pixel_pitch_mm,
+        .threads = settings.threads};
     const findings::StepInput all =
         input_of({{"name", simulation.name},
                   {"model", stated_model(simulation.model)},

@@ -177,6 +177,28 @@ TEST(CalibrationMeasure, UnusableSetsAreRefused) {
     }
 }
 
+// However many pictures are looked at at once, each is held against those before it.
+TEST(CalibrationMeasure, IsTheSameForAnyNumberOfThreads) {
+    std::vector<Picture> pictures{
+        {"gone", PictureRole::chart, []() -> formats::Image { throw InputError("gone: no such file"); }}};
+    unsigned seed = 0;
+    for (const Pose& pose : tilted_poses(520.0, 0.35, 60.0)) {
+        const unsigned own = seed++ % 4;  // the fifth is the first again
+        pictures.push_back({"view" + std::to_string(seed), PictureRole::chart, [pose, own] {
+                                return colour_picture(own == 0 ? tilted_poses(520.0, 0.35, 60.0)[0] : pose, own);
+                            }});
+    }
+    pictures.push_back({"small", PictureRole::chart, [] { return formats::make_image(320, 240, {"R", "G", "B"}); }});
+    MeasureInput input = input_with(std::move(pictures));
+    input.threads = 1;
+    const Profile one = measure(input);
+    EXPECT_EQ(one.pictures[0].reason, "no such file");
+    EXPECT_EQ(one.pictures[5].reason, "the same picture as view1");
+    EXPECT_TRUE(one.pictures.back().reason.starts_with("the picture is 320 × 240 pixels: expected 640 × 480"));
+    input.threads = 3;
+    EXPECT_EQ(to_json(measure(input)), to_json(one));
+}
+
 // OpenCV's own calibration pictures (Debian's opencv-doc). Focal length by OpenCV 533.1 px, by mrcal 533.5 px; two
 // independent programs, so 533.3 within 0.4 %.
 TEST(CalibrationMeasure, OpenCvPhotosGiveTheKnownFocalLength) {
