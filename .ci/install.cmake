@@ -41,7 +41,7 @@ install(FILES ${made}/_lensproof DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor
 get_property(engine GLOBAL PROPERTY LENSPROOF_ENGINE)
 add_custom_target(engine DEPENDS ${engine})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lensproof)
-install(TARGETS ${engine} lensproof_options lensproof_opencv lensproof_oidn EXPORT lensproof
+install(TARGETS ${engine} lensproof_options lensproof_opencv lensproof_oidn lensproof_oiio EXPORT lensproof
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/lensproof COMPONENT development)
 install(EXPORT lensproof NAMESPACE lensproof:: DESTINATION ${package} FILE lensproofTargets.cmake COMPONENT development)
 install(DIRECTORY engine DESTINATION include/lensproof COMPONENT development FILES_MATCHING PATTERN "*.h")

@@ -20,7 +20,8 @@
 namespace {
 
 std::atomic<long> calls = 0;
-std::atomic<bool> in_main = false;  // what runs before has nobody to catch it
+std::atomic<bool> in_main = false;             // what runs before has nobody to catch it,
+thread_local bool is_loading_library = false;  // nor has what runs while a library is loaded
 
 // By the system's own numbers: the calls below would count themselves.
 void leave_mark() {
@@ -32,7 +33,7 @@ void leave_mark() {
 bool is_turn(const char* kind) {
     const char* asked = std::getenv("LENSPROOF_FAIL");
     const std::size_t length = std::strlen(kind);
-    if (!in_main || asked == nullptr || std::strncmp(asked, kind, length) != 0) {
+    if (!in_main || is_loading_library || asked == nullptr || std::strncmp(asked, kind, length) != 0) {
         return false;
     }
     const bool goes_on = asked[length] == 's';
@@ -85,6 +86,14 @@ int __libc_start_main(Main main, int argc, char** argv, void (*init)(), void (*e
                       void* stack_end) {
     program_main = main;
     return next(&__libc_start_main, "__libc_start_main")(noted_main, argc, argv, init, end, loader_end, stack_end);
+}
+
+void* dlopen(const char* file, int mode) {
+    static const auto real = next(&dlopen, "dlopen");
+    is_loading_library = true;
+    void* const library = real(file, mode);
+    is_loading_library = false;
+    return library;
 }
 
 ssize_t write(int descriptor, const void* bytes, size_t size) {

@@ -10,7 +10,6 @@
 #include "calibration/detection/refine.h"
 #include "calibration/detection/working_copy.h"
 #include "calibration/picture/picture_quality.h"
-#include "engine/base/confined.h"
 #include "engine/base/hash.h"
 #include "engine/base/parallel.h"
 
@@ -287,10 +286,6 @@ void take(Observations& seen, Look look, const Picture& picture, const MeasureIn
 
 // How many pictures of a size are looked at at once: those of a cheap camera on all cores, of a large one fewer.
 int at_once(const Observations& seen, int threads) {
-    if (files_are_distrusted()) {  // each is decoded in a process of its own, which is made where no thread holds a
-                                   // lock
-        return 1;
-    }
     constexpr double kMostPixels = 1e8;  // some 4 GB
     const double pixels = std::max(1.0, static_cast<double>(seen.width) * seen.height);
     const int affordable = static_cast<int>(std::clamp(kMostPixels / pixels, 1.0, 1024.0));

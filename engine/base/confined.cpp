@@ -97,10 +97,11 @@ void limit_resources() {
 #endif
 }
 
-/// What a forker is asked for: the work, whose place in memory is the same in both processes, with a socket beside it.
+/// What a forker is asked for: the work and what goes before it, whose places in memory are the same in both processes,
+/// with a socket beside them.
 class Order {
   public:
-    explicit Order(ConfinedWork ordered = nullptr) : work_(ordered) {
+    explicit Order(ConfinedWork ordered = nullptr, void (*before)() = nullptr) : what_{ordered, before} {
         message_.msg_iov = &bytes_;
         message_.msg_iovlen = 1;
         message_.msg_control = control_.data();
@@ -109,7 +110,12 @@ class Order {
     Order(const Order&) = delete;  // the message points into it
     Order& operator=(const Order&) = delete;
 
-    [[nodiscard]] ConfinedWork work() const { return work_; }
+    [[nodiscard]] ConfinedWork work() const { return what_.work; }
+    void prepare() const {
+        if (what_.prepare != nullptr) {
+            what_.prepare();
+        }
+    }
 
     void send(int socket) {
         ::cmsghdr* const header = CMSG_FIRSTHDR(&message_);
@@ -117,7 +123,7 @@ class Order {
         header->cmsg_type = SCM_RIGHTS;
         header->cmsg_len = CMSG_LEN(sizeof socket);
         std::memcpy(CMSG_DATA(header), &socket, sizeof socket);
-        if (::sendmsg(forker(), &message_, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof work_)) {
+        if (::sendmsg(forker(), &message_, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof what_)) {
             throw std::runtime_error("the process that confined readers are started from has ended");
         }
     }
@@ -125,7 +131,7 @@ class Order {
     /// Its socket; −1 where nobody is left to ask.
     int receive(int orders) {
         int socket = -1;
-        const bool is_whole = ::recvmsg(orders, &message_, MSG_CMSG_CLOEXEC) == static_cast<ssize_t>(sizeof work_);
+        const bool is_whole = ::recvmsg(orders, &message_, MSG_CMSG_CLOEXEC) == static_cast<ssize_t>(sizeof what_);
         if (const ::cmsghdr* header = CMSG_FIRSTHDR(&message_); is_whole && header != nullptr) {
             std::memcpy(&socket, CMSG_DATA(header), sizeof socket);
         }
@@ -133,8 +139,11 @@ class Order {
     }
 
   private:
-    ConfinedWork work_;
-    ::iovec bytes_{.iov_base = &work_, .iov_len = sizeof work_};
+    struct {
+        ConfinedWork work;
+        void (*prepare)();
+    } what_;
+    ::iovec bytes_{.iov_base = &what_, .iov_len = sizeof what_};
     alignas(::cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control_{};
     ::msghdr message_{};
 };
@@ -175,6 +184,7 @@ void serve(ConfinedWork work, MessageChannel channel) {
         if (socket == -1) {
             std::_Exit(0);
         }
+        order.prepare();
         if (::fork() == 0) {
             ::close(orders);
             serve(order.work(), MessageChannel(socket, {}));
@@ -296,7 +306,7 @@ void MessageChannel::receive_all(char* bytes, std::size_t count) {
     }
 }
 
-MessageChannel start_confined(ConfinedWork work, const fs::path& file, const fs::path& readable) {
+MessageChannel start_confined(ConfinedWork work, const fs::path& file, const fs::path& readable, void (*prepare)()) {
     static std::mutex one_at_a_time;
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
@@ -305,7 +315,7 @@ MessageChannel start_confined(ConfinedWork work, const fs::path& file, const fs:
     MessageChannel channel(ends[0], file);
     {
         const std::lock_guard lock(one_at_a_time);
-        Order(work).send(ends[1]);
+        Order(work, prepare).send(ends[1]);
     }
     ::close(ends[1]);
     channel.send(file.string());

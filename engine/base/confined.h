@@ -54,8 +54,10 @@ using ConfinedWork = void (*)(const std::filesystem::path& file, MessageChannel&
 
 /// Starts `work` on `file` in a process that may read `readable` (a file, or a folder and all in it) and no other file,
 /// writes none, starts no program, opens no connection over TCP, takes half of the memory that there is and a minute of
-/// a processor's time. Limits that the system does not have do not hold (see distrust_files).
+/// a processor's time. Limits that the system does not have do not hold (see distrust_files). `prepare` is called
+/// before, where other files may be read yet, in the process that confined ones are forked from: it loads what they
+/// need.
 MessageChannel start_confined(ConfinedWork work, const std::filesystem::path& file,
-                              const std::filesystem::path& readable);
+                              const std::filesystem::path& readable, void (*prepare)() = nullptr);
 
 }  // namespace lensproof

@@ -236,10 +236,13 @@ class Decoder {
     std::vector<char> rows_of_tiles_;
 };
 
-void decode(const fs::path& file, MessageChannel& channel) {
-    // Threads would be the library's, and it is one file.
+// Threads would be the library's, and it is one file. Where it is loaded late (.ci/late_library.cmake), this does it.
+void prepare_library() {
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
+}
+
+void decode(const fs::path& file, MessageChannel& channel) {
     const std::string asked = channel.receive();
     Taker hints(file, asked);
     const OpenPicture picture = open_picture_here(file, take_spec(hints));
@@ -324,7 +327,7 @@ class ConfinedInput final : public OIIO::ImageInput {
 }  // namespace
 
 OpenPicture open_confined(const fs::path& file, const OIIO::ImageSpec& hints) {
-    MessageChannel channel = start_confined(decode, file, file);
+    MessageChannel channel = start_confined(decode, file, file, prepare_library);
     std::string bytes;
     put_spec(bytes, hints);
     channel.send(bytes);
