@@ -42,7 +42,7 @@ struct MeasureInput {
     /// edges are looked for (calibration/sharpness/find_edges.h).
     std::vector<PixelRectangle> edges;
     bool with_sharpness = true;  // whether the edges of charts are looked at
-    int threads = 0;              // 0: one a core; they change nothing but the time
+    int threads = 0;             // 0: one a core; they change nothing but the time
     /// Told, before each picture or behind it, which part of them has been looked at, 0 to 1.
     std::function<void(double)> progress = nullptr;
     /// Where the focus stood in which picture (by name), mm, for field curvature; empty: not known.
