@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iostream>
+#include <ostream>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -32,6 +32,7 @@ void distrust_inputs() {
 }  // namespace
 
 void add_common_options(Command& command, CommonOptions& options) {
+    options.standard_result = &command.result();
     command.add_option("--json", options.json_file, "Write the machine-readable result to FILE (-: standard output)")
         .type_name("FILE");
     command.add_flag("--quiet", options.quiet, "No progress on standard error");
@@ -115,9 +116,9 @@ void check_json_name(const CommonOptions& options) {
 
 namespace {
 
-void put_json(const std::string& file, const std::function<void(std::ostream&)>& write) {
-    if (file == "-") {
-        write(std::cout);
+void put_json(const CommonOptions& options, const std::function<void(std::ostream&)>& write) {
+    if (const std::string& file = options.json_file; file == "-") {
+        write(*options.standard_result);
     } else if (!file.empty()) {
         check_place(write_somewhere({file}, [&](const std::filesystem::path& place) { write_stream(place, write); }));
     }
@@ -126,7 +127,7 @@ void put_json(const std::string& file, const std::function<void(std::ostream&)>&
 }  // namespace
 
 void write_json_result(const CommonOptions& options, const Json& result) {
-    put_json(options.json_file, [&](std::ostream& out) { out << result.dump(2) << "\n"; });
+    put_json(options, [&](std::ostream& out) { out << result.dump(2) << "\n"; });
 }
 
 void check_place(const Delivery& delivery) {
@@ -140,7 +141,7 @@ void write_json_result(const CommonOptions& options, const Json& result, std::st
     const std::string text = result.dump(2) + "\n";
     const std::string mark = fmt::format("\"{}\": [", list);  // in no text, which has its quotes escaped
     const std::size_t inside = text.find(mark) + mark.size();
-    put_json(options.json_file, [&](std::ostream& out) {
+    put_json(options, [&](std::ostream& out) {
         out << text.substr(0, inside);
         const char* between = "\n";
         each([&](const Json& value) {

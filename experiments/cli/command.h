@@ -20,7 +20,8 @@ enum ExitStatus { kDone = 0, kCheckFailed = 1, kUnusableInput = 2, kInternalFail
 
 /// The options that every command takes.
 struct CommonOptions {
-    std::string json_file;  // "-": standard output, and nothing else there
+    std::string json_file;                    // "-": standard output, and nothing else there
+    std::ostream* standard_result = nullptr;  // which is this stream
     bool quiet = false;
     int threads = 0;
     std::uint64_t seed = 0;

@@ -225,8 +225,8 @@ void Command::runs(const std::function<int()>& run) {
 }
 
 Program::Program(const std::string& name, const std::string& description, const std::function<std::string()>& version,
-                 const std::string& footer)
-    : app_(std::make_unique<CLI::App>(description, name)), name_(name) {
+                 const std::string& footer, std::ostream& result)
+    : app_(std::make_unique<CLI::App>(description, name)), name_(name), result_(&result) {
     app_->set_version_flag("--version", version);
     app_->footer(footer);
     app_->require_subcommand(1);
@@ -235,7 +235,7 @@ Program::Program(const std::string& name, const std::string& description, const 
 Program::~Program() = default;
 
 Command Program::add_command(const std::string& name, const std::string& description) {
-    return {app_->add_subcommand(name, description), &status_};
+    return {app_->add_subcommand(name, description), &status_, result_};
 }
 
 std::vector<CommandDescription> Program::describe() const {
@@ -254,9 +254,11 @@ std::vector<CommandDescription> Program::describe() const {
     return commands;
 }
 
-int Program::run(int argc, char** argv) {
+int Program::run(const std::vector<std::string>& arguments) {
+    std::vector<const char*> words = {name_.c_str()};
+    std::ranges::transform(arguments, std::back_inserter(words), &std::string::c_str);
     try {
-        app_->parse(argc, argv);
+        app_->parse(static_cast<int>(words.size()), words.data());
     } catch (const CLI::Success& success) {
         return app_->exit(success);  // --help, --version
     } catch (const CLI::ParseError& error) {

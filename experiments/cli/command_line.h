@@ -3,6 +3,7 @@
 // The parser library's header costs each file that includes it some eight seconds; it is kept to command_line.cpp.
 #pragma once
 #include <functional>
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,7 +73,7 @@ class Option {
 class Command {
   public:
     /// `status`: where what it returns goes.
-    Command(CLI::App* app, int* status) : app_(app), status_(status) {}
+    Command(CLI::App* app, int* status, std::ostream* result) : app_(app), status_(status), result_(result) {}
 
     /// `names`: "-o,--output", or a bare name for what stands without one. The value is set where the option is given;
     /// it outlives the program. T: std::string, double and int, these as std::optional, lists of the first two;
@@ -88,16 +89,20 @@ class Command {
     /// What the command does; returns the exit status.
     void runs(const std::function<int()>& run);
 
+    /// Where `--json -` goes.
+    [[nodiscard]] std::ostream& result() const { return *result_; }
+
   private:
     CLI::App* app_;
     int* status_;
+    std::ostream* result_;
 };
 
 class Program {
   public:
-    /// `version` is asked for --version alone.
+    /// `version` is asked for --version alone. `result`, which outlives it, is where `--json -` goes.
     Program(const std::string& name, const std::string& description, const std::function<std::string()>& version,
-            const std::string& footer);
+            const std::string& footer, std::ostream& result);
     ~Program();
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
@@ -107,13 +112,14 @@ class Program {
     /// The commands that were added, in their order, without the --help of each.
     [[nodiscard]] std::vector<CommandDescription> describe() const;
 
-    /// Runs the command that the arguments name, and returns its exit status; 0 after --help and --version. Throws
-    /// InputError for arguments that are unusable.
-    int run(int argc, char** argv);
+    /// Runs the command that the arguments name (the program's own name is not among them), and returns its exit
+    /// status; 0 after --help and --version. Throws InputError for arguments that are unusable.
+    int run(const std::vector<std::string>& arguments);
 
   private:
     std::unique_ptr<CLI::App> app_;
     std::string name_;
+    std::ostream* result_;
     int status_ = 0;
 };
 

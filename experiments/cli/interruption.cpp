@@ -2,6 +2,8 @@
 
 #include <atomic>
 
+#include "engine/base/stop.h"
+
 namespace lensproof::cli {
 
 namespace {
@@ -12,9 +14,9 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a handler may set it");
 
 }  // namespace
 
-Interruption::Interruption() {
+Interruption::Interruption() : takes_signals_(StopScope::current() == nullptr) {
     came = false;
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    for (std::size_t i = 0; takes_signals_ && i < kSignals.size(); ++i) {
         ::sigaction(kSignals[i], nullptr, &before_[i]);
         if (before_[i].sa_handler != SIG_IGN) {
             struct sigaction note {};
@@ -26,7 +28,7 @@ Interruption::Interruption() {
 }
 
 Interruption::~Interruption() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    for (std::size_t i = 0; takes_signals_ && i < kSignals.size(); ++i) {
         ::sigaction(kSignals[i], &before_[i], nullptr);
     }
 }

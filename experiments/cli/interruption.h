@@ -6,7 +6,8 @@
 namespace lensproof::cli {
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP are noted rather than obeyed: the first of them, a second one ends the
-/// program at once. Those that the program was started to ignore, as `nohup` does, stay ignored. One at a time.
+/// program at once. Those that the program was started to ignore, as `nohup` does, stay ignored; and all are left to
+/// whoever has this thread's work stopped in another way (engine/base/stop.h). One at a time.
 class Interruption {
   public:
     Interruption();
@@ -19,6 +20,7 @@ class Interruption {
 
   private:
     static constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGHUP};
+    bool takes_signals_;
     std::array<struct sigaction, kSignals.size()> before_{};
 };
 

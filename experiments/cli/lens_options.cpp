@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "engine/analysis/best_focus.h"
 #include "engine/analysis/field_curves.h"
@@ -209,6 +210,27 @@ AnalysedLens read_analysed_lens(const LensOptions& options) {
         lens = analysis::with_image_shift(std::move(lens), shift);
     }
     return {std::move(prescription), std::move(lens), std::move(settings)};
+}
+
+AnalysedLens read_analysed_lens(const std::vector<std::string>& arguments) {
+    std::ostringstream nowhere;
+    Program program(
+        "lensproof", "", [] { return ""; }, "", nowhere);
+    Command command = program.add_command("analyze", "");
+    LensOptions options;
+    add_lens_options(command, options);
+    std::optional<AnalysedLens> lens;
+    command.runs([&] {
+        lens = read_analysed_lens(options);
+        return static_cast<int>(kDone);
+    });
+    std::vector<std::string> words = {"analyze"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    program.run(words);
+    if (!lens) {
+        throw InputError("expected a lens and its options");
+    }
+    return *std::move(lens);
 }
 
 }  // namespace lensproof::cli

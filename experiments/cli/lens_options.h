@@ -41,4 +41,7 @@ struct AnalysedLens {
 /// Throws InputError for what cannot be read or used.
 AnalysedLens read_analysed_lens(const LensOptions& options);
 
+/// The same from the command line's words: LENS and the options above, as `analyze` takes them.
+AnalysedLens read_analysed_lens(const std::vector<std::string>& arguments);
+
 }  // namespace lensproof::cli
