@@ -8,7 +8,7 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/convert_lens.h"
-#include "engine/optics/packet/trace_batch.h"
+#include "engine/optics/packet/trace_arrays.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -71,6 +71,35 @@ void time_batch(benchmark::State& state, const std::string& name, optics::SimdLe
         benchmark::ClobberMemory();
     }
     count(state, lens.surfaces.size());
+}
+
+/// Rays in arrays, a million of them, which the Python module is held to; `threads` as trace_arrays has them.
+void time_arrays(benchmark::State& state, const std::string& name, int threads) {
+    constexpr std::size_t kMillion = 1'000'000;
+    const optics::Lens lens = formats::load_lens(name);
+    const optics::SpectralLens<double> at = optics::at_wavelengths<double>(lens, {kWavelengthNm});
+    const std::vector<Ray<double>> some = passing_rays(lens, optics::Direction::forward);
+    optics::RayBatch<double> given(static_cast<int>(kMillion));
+    for (std::size_t i = 0; i < kMillion; ++i) {
+        given.set(static_cast<int>(i), some[i % some.size()]);
+    }
+    const auto column = [](const optics::PacketColumn<double>& numbers) {
+        return optics::NumberColumn{reinterpret_cast<const char*>(numbers.data()), sizeof(double)};
+    };
+    const optics::RayArrays rays{column(given.origin.x),
+                                 column(given.origin.y),
+                                 column(given.origin.z),
+                                 column(given.direction.x),
+                                 column(given.direction.y),
+                                 column(given.direction.z),
+                                 kMillion};
+    optics::RayBatch<double> traced(static_cast<int>(kMillion));
+    while (state.KeepRunning()) {
+        optics::trace_arrays(at, rays, traced.columns(), {}, threads);
+        benchmark::ClobberMemory();
+    }
+    state.counters["rays/s"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * kMillion, benchmark::Counter::kIsRate);
 }
 
 template <class T>
@@ -180,6 +209,12 @@ void register_batches(const std::string& lens, const std::string& type) {
 }  // namespace
 
 void register_trace_benchmarks() {
+    for (const int threads : {1, 0}) {
+        benchmark::RegisterBenchmark(
+            threads == 1 ? "arrays/tessar/million/one_thread" : "arrays/tessar/million/all_cores",
+            [threads](benchmark::State& state) { time_arrays(state, "tessar", threads); })
+            ->UseRealTime();
+    }
     for (const char* lens : {"tessar", "petzval", "muller-fisheye"}) {
         register_precision<double>(lens);
         register_precision<float>(lens);

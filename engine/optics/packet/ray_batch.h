@@ -29,6 +29,24 @@ struct PacketAllocator {
 template <class T>
 using PacketColumn = std::vector<T, PacketAllocator<T>>;
 
+/// Rays in columns of someone else's memory, each as in RayBatch below: aligned for packets, and as long as fills the
+/// last one.
+template <class T>
+struct RayColumns {
+    T* x;
+    T* y;
+    T* z;
+    T* dx;
+    T* dy;
+    T* dz;
+    T* optical_path;
+    T* transmittance;
+    const std::uint16_t* wavelength;  // null will do where the lens has one
+    RayStatus* status;
+    std::int16_t* surface;
+    int size;
+};
+
 /// Up to `capacity` rays in lens space, a column a quantity. Columns are longer than that by what fills the last
 /// packet.
 template <class T>
@@ -72,6 +90,22 @@ struct RayBatch {
     [[nodiscard]] Ray<T> ray(int i) const {
         const auto at = static_cast<std::size_t>(i);
         return {{origin.x[at], origin.y[at], origin.z[at]}, {direction.x[at], direction.y[at], direction.z[at]}};
+    }
+
+    /// The rays in use, for as long as this stays where it is.
+    [[nodiscard]] RayColumns<T> columns() {
+        return {.x = origin.x.data(),
+                .y = origin.y.data(),
+                .z = origin.z.data(),
+                .dx = direction.x.data(),
+                .dy = direction.y.data(),
+                .dz = direction.z.data(),
+                .optical_path = optical_path.data(),
+                .transmittance = transmittance.data(),
+                .wavelength = wavelength.data(),
+                .status = status.data(),
+                .surface = surface.data(),
+                .size = size};
     }
 
   private:

@@ -66,7 +66,7 @@ template float lane_coated_transmittance(const SpectralLens<float>&, int, int, b
 template double lane_coated_transmittance(const SpectralLens<double>&, int, int, bool, double);
 
 template <Direction direction, class T>
-void trace_batch(const SpectralLens<T>& lens, RayBatch<T>& rays, const BatchSettings& settings) {
+void trace_columns(const SpectralLens<T>& lens, const RayColumns<T>& rays, const BatchSettings& settings) {
     const std::vector<TraceSurface<T>>& surfaces = lens.at().front().surfaces;
     const KernelLens<T> plain_lens{.surfaces = surfaces.data(),
                                    .indices = lens.indices().data(),
@@ -75,21 +75,23 @@ void trace_batch(const SpectralLens<T>& lens, RayBatch<T>& rays, const BatchSett
                                    .count = static_cast<int>(surfaces.size()),
                                    .is_monochromatic = lens.wavelengths() == 1,
                                    .absorbs = lens.absorbs()};
-    const KernelRays<T> plain_rays{.x = rays.origin.x.data(),
-                                   .y = rays.origin.y.data(),
-                                   .z = rays.origin.z.data(),
-                                   .dx = rays.direction.x.data(),
-                                   .dy = rays.direction.y.data(),
-                                   .dz = rays.direction.z.data(),
-                                   .optical_path = rays.optical_path.data(),
-                                   .transmittance = rays.transmittance.data(),
-                                   .wavelength = rays.wavelength.data(),
-                                   .status = rays.status.data(),
-                                   .surface = rays.surface.data(),
-                                   .size = rays.size};
     const auto& loops = kernels_of<T>(settings.level)[static_cast<std::size_t>(direction)];
-    loops[static_cast<std::size_t>(settings.carry)](plain_lens, plain_rays, settings.rims == Rims::clip);
+    loops[static_cast<std::size_t>(settings.carry)](plain_lens, rays, settings.rims == Rims::clip);
 }
+
+template <Direction direction, class T>
+void trace_batch(const SpectralLens<T>& lens, RayBatch<T>& rays, const BatchSettings& settings) {
+    trace_columns<direction>(lens, rays.columns(), settings);
+}
+
+template void trace_columns<Direction::forward>(const SpectralLens<float>&, const RayColumns<float>&,
+                                                const BatchSettings&);
+template void trace_columns<Direction::reverse>(const SpectralLens<float>&, const RayColumns<float>&,
+                                                const BatchSettings&);
+template void trace_columns<Direction::forward>(const SpectralLens<double>&, const RayColumns<double>&,
+                                                const BatchSettings&);
+template void trace_columns<Direction::reverse>(const SpectralLens<double>&, const RayColumns<double>&,
+                                                const BatchSettings&);
 
 template void trace_batch<Direction::forward>(const SpectralLens<float>&, RayBatch<float>&, const BatchSettings&);
 template void trace_batch<Direction::reverse>(const SpectralLens<float>&, RayBatch<float>&, const BatchSettings&);

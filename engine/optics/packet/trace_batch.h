@@ -29,4 +29,8 @@ struct BatchSettings {
 template <Direction direction = Direction::forward, class T>
 void trace_batch(const SpectralLens<T>& lens, RayBatch<T>& rays, const BatchSettings& settings = {});
 
+/// The same for rays in someone else's memory.
+template <Direction direction = Direction::forward, class T>
+void trace_columns(const SpectralLens<T>& lens, const RayColumns<T>& rays, const BatchSettings& settings = {});
+
 }  // namespace lensproof::optics

@@ -21,7 +21,7 @@ class BlockTracer {
   public:
     static constexpr int kBlock = 128;  // rays; their columns stay in the first-level cache
 
-    BlockTracer(const KernelLens<Scalar>& lens, const KernelRays<Scalar>& rays, bool clip, int first)
+    BlockTracer(const KernelLens<Scalar>& lens, const RayColumns<Scalar>& rays, bool clip, int first)
         : lens_(lens), rays_(rays), clip_(clip), first_(first) {}
 
     void trace() {
@@ -462,7 +462,7 @@ class BlockTracer {
     }
 
     KernelLens<Scalar> lens_;
-    KernelRays<Scalar> rays_;
+    RayColumns<Scalar> rays_;
     bool clip_;
     int first_;
     int packets_ = 0;
@@ -482,7 +482,7 @@ class BlockTracer {
 };
 
 template <class Scalar, class Abi, Direction direction, Carry carry>
-[[gnu::flatten]] void trace_blocks(const KernelLens<Scalar>& lens, const KernelRays<Scalar>& rays, bool clip) {
+[[gnu::flatten]] void trace_blocks(const KernelLens<Scalar>& lens, const RayColumns<Scalar>& rays, bool clip) {
     using Tracer = BlockTracer<Scalar, Abi, direction, carry>;
     for (int first = 0; first < rays.size; first += Tracer::kBlock) {
         Tracer(lens, rays, clip, first).trace();

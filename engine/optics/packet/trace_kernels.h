@@ -1,7 +1,6 @@
 // engine/optics/packet/trace_kernels.h — the packet tracer's inner loops, one for each width, as plain functions.
 #pragma once
 #include <array>
-#include <cstdint>
 
 #include "engine/optics/packet/spectral_lens.h"
 #include "engine/optics/packet/trace_batch.h"
@@ -20,23 +19,6 @@ struct KernelLens {
     bool absorbs = false;
 };
 
-/// Rays as the inner loop sees them: the columns of a RayBatch.
-template <class T>
-struct KernelRays {
-    T* x;
-    T* y;
-    T* z;
-    T* dx;
-    T* dy;
-    T* dz;
-    T* optical_path;
-    T* transmittance;
-    const std::uint16_t* wavelength;
-    RayStatus* status;
-    std::int16_t* surface;
-    int size;
-};
-
 /// `mask_transmittance`, `coated_transmittance` and `fading` of one ray, and its thin element. Not inline, so that they
 /// are compiled for any machine.
 template <class T>
@@ -51,7 +33,7 @@ template <class T>
 T lane_fading(T optical_depth);
 
 template <class T>
-using TraceKernel = void (*)(const KernelLens<T>& lens, const KernelRays<T>& rays, bool clip);
+using TraceKernel = void (*)(const KernelLens<T>& lens, const RayColumns<T>& rays, bool clip);
 
 /// The inner loops of one level by Direction and Carry.
 template <class T>
