@@ -83,7 +83,31 @@ FieldWavefront field_wavefront(const PolychromaticField& field, const Polychroma
     return shown;
 }
 
-/// The middle of a picture, wide enough for the rays and for some rings of Airy's disc.
+MtfCurve ray_mtf(const PolychromaticField& field, std::span<const double> frequencies) {
+    GeometricMtfSettings rays;
+    MtfCurve curve = geometric_mtf(field, frequencies, rays);
+    for (int i = 0; i < kMostRefinements && curve.status == PupilStatus::aliased; ++i) {
+        rays = {.azimuths = 2 * rays.azimuths, .rings = 2 * rays.rings};
+        curve = geometric_mtf(field, frequencies, rays);
+    }
+    return curve;
+}
+
+FieldMtf field_mtf(const MtfCurve& curve, double field_deg, const std::string& remark = "") {
+    FieldMtf mtf{.field_deg = field_deg, .remark = remark};
+    if (curve.status != PupilStatus::ok) {
+        mtf.remark = status_remark(curve.status);
+        return mtf;
+    }
+    for (std::size_t i = 0; i < curve.frequency.size(); ++i) {
+        mtf.tangential.push_back({curve.frequency[i], curve.tangential[i]});
+        mtf.sagittal.push_back({curve.frequency[i], curve.sagittal[i]});
+    }
+    return mtf;
+}
+
+}  // namespace
+
 PsfMap psf_map(const PolychromaticField& field, double field_deg) {
     PsfMap map{.field_deg = field_deg};
     Psf psf = fft_psf(field);
@@ -108,35 +132,28 @@ PsfMap psf_map(const PolychromaticField& field, double field_deg) {
     return map;
 }
 
-MtfCurve ray_mtf(const PolychromaticField& field, std::span<const double> frequencies) {
-    GeometricMtfSettings rays;
-    MtfCurve curve = geometric_mtf(field, frequencies, rays);
-    for (int i = 0; i < kMostRefinements && curve.status == PupilStatus::aliased; ++i) {
-        rays = {.azimuths = 2 * rays.azimuths, .rings = 2 * rays.rings};
-        curve = geometric_mtf(field, frequencies, rays);
-    }
-    return curve;
-}
-
-FieldMtf field_mtf(const MtfCurve& curve, double field_deg, const std::string& remark = "") {
-    FieldMtf mtf{.field_deg = field_deg, .remark = remark};
-    if (curve.status != PupilStatus::ok) {
-        mtf.remark = status_remark(curve.status);
-        return mtf;
-    }
-    for (std::size_t i = 0; i < curve.frequency.size(); ++i) {
-        mtf.tangential.push_back({curve.frequency[i], curve.tangential[i]});
-        mtf.sagittal.push_back({curve.frequency[i], curve.sagittal[i]});
-    }
-    return mtf;
-}
-
-/// With diffraction, or by rays where the path differences are too steep to be sampled: there the two agree.
 FieldMtf resolved_mtf(const PolychromaticField& field, std::span<const double> frequencies, double field_deg) {
     const MtfCurve curve = diffraction_mtf(field, frequencies);
     return curve.status == PupilStatus::ok ? field_mtf(curve, field_deg)
                                            : field_mtf(ray_mtf(field, frequencies), field_deg, "by rays");
 }
+
+FieldMtf diffraction_limited_mtf(const PolychromaticField& field, std::span<const double> frequencies,
+                                 double field_deg) {
+    return field_mtf(diffraction_mtf(field, frequencies, MtfKind::diffraction_limited), field_deg);
+}
+
+std::vector<double> shown_frequencies(const PolychromaticField& axis) {
+    const double highest = std::min(kHighestFrequency, cutoff_frequency(axis));
+    std::vector<double> frequencies;
+    frequencies.reserve(kFrequencies);
+    for (std::size_t i = 0; i < kFrequencies; ++i) {
+        frequencies.push_back(highest * static_cast<double>(i) / (kFrequencies - 1));
+    }
+    return frequencies;
+}
+
+namespace {
 
 std::vector<FrequencyMtf> mtf_over_field(const optics::Lens& lens, AnalysisSettings settings, int threads) {
     std::vector<FrequencyMtf> curves;
@@ -162,17 +179,6 @@ std::vector<FrequencyMtf> mtf_over_field(const optics::Lens& lens, AnalysisSetti
     return curves;
 }
 
-/// Frequencies in even steps up to where the axis is cut off, at the most.
-std::vector<double> shown_frequencies(const PolychromaticField& axis) {
-    const double highest = std::min(kHighestFrequency, cutoff_frequency(axis));
-    std::vector<double> frequencies;
-    frequencies.reserve(kFrequencies);
-    for (std::size_t i = 0; i < kFrequencies; ++i) {
-        frequencies.push_back(highest * static_cast<double>(i) / (kFrequencies - 1));
-    }
-    return frequencies;
-}
-
 }  // namespace
 
 WaveCurves wave_curves(const optics::Lens& lens, const AnalysisSettings& settings, int threads) {
@@ -193,8 +199,7 @@ WaveCurves wave_curves(const optics::Lens& lens, const AnalysisSettings& setting
         return curves;
     }
     const std::vector<double> frequencies = shown_frequencies(*axis);
-    curves.diffraction_limit =
-        field_mtf(diffraction_mtf(*axis, frequencies, MtfKind::diffraction_limited), 0.0).tangential;
+    curves.diffraction_limit = diffraction_limited_mtf(*axis, frequencies, 0.0).tangential;
     const double axial_radius = 0.5 * cosine_box(*axis, axis->parts.front()).width();
     AnalysisSettings at_reference = settings;
     at_reference.wavelengths_nm.assign(1, settings.reference_wavelength_nm);

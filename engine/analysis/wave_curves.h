@@ -1,6 +1,7 @@
 // engine/analysis/wave_curves.h — what diffraction makes of a lens's fields, sampled for plots: wavefronts, PSF and
 // MTF.
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,20 @@ struct WaveCurves {
     std::vector<Vec2d> diffraction_limit;
     std::vector<FrequencyMtf> mtf_over_field;
 };
+
+/// The middle of a field's point image, by FFT, wide enough for the rays and for some rings of Airy's disc.
+PsfMap psf_map(const PolychromaticField& field, double field_deg);
+
+/// A field's MTF with diffraction, or by rays where the path differences are too steep to be sampled: there the two
+/// agree.
+FieldMtf resolved_mtf(const PolychromaticField& field, std::span<const double> frequencies, double field_deg);
+
+/// That of the same pupil without aberration: without curves where that cannot be sampled.
+FieldMtf diffraction_limited_mtf(const PolychromaticField& field, std::span<const double> frequencies,
+                                 double field_deg);
+
+/// Frequencies in even steps up to where the field is cut off, at most 100 cycles/mm.
+std::vector<double> shown_frequencies(const PolychromaticField& axis);
 
 /// Fields on up to `threads` threads (0: one a core).
 WaveCurves wave_curves(const optics::Lens& lens, const AnalysisSettings& settings, int threads = 0);
