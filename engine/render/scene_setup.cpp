@@ -84,6 +84,21 @@ SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::pat
     return read_scene_setup(TomlTable::parse(text, name));
 }
 
+SceneSetup coarser(SceneSetup setup, int shrinks, int fewer) {
+    Sensor& sensor = setup.camera.sensor;
+    const double width_mm = sensor.width * sensor.pixel_pitch_mm;
+    const int whole_width = sensor.width;
+    sensor.width = std::max(1, sensor.width / shrinks);
+    sensor.height = std::max(1, sensor.height / shrinks);
+    sensor.pixel_pitch_mm = width_mm / sensor.width;
+    sensor.axis_from_middle_px = static_cast<double>(sensor.width) / whole_width * sensor.axis_from_middle_px;
+    setup.samples_per_pixel = std::max(1, setup.samples_per_pixel / fewer);
+    if (setup.stray_camera) {
+        setup.stray_camera->sensor = sensor;
+    }
+    return setup;
+}
+
 SceneSetup read_scene_setup(const std::filesystem::path& file) {
     return read_scene_setup(TomlTable::read(file));
 }

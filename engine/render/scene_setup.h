@@ -47,6 +47,9 @@ SceneSetup read_scene_setup(TomlTable top);
 /// The same from a text; `name` stands for the file in messages, and its folder is where files are looked for.
 SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name);
 
+/// The same frame in pixels `shrinks` times as wide and as high, with one sample for `fewer`, one at least.
+SceneSetup coarser(SceneSetup setup, int shrinks, int fewer);
+
 /// Reads a chart's table [light], and a table [render] over what `setup` says.
 void read_even_light(TomlTable& table, SceneSetup& setup);
 void read_render_table(TomlTable& table, SceneSetup& setup);

@@ -1,9 +1,12 @@
 // experiments/cli/run_command.cpp — `lensproof run EXPERIMENT`: end to end, to a report.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "engine/base/cache.h"
@@ -13,10 +16,13 @@
 #include "experiments/cli/command.h"
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
+#include "experiments/cli/run_plan.h"
 #include "experiments/cli/terminal.h"
 #include "experiments/draw/report/report.h"
+#include "experiments/runner/against.h"
 #include "experiments/runner/kept_steps.h"
 #include "experiments/runner/report_content.h"
+#include "experiments/runner/run_index.h"
 
 namespace lensproof::cli {
 
@@ -27,6 +33,12 @@ struct RunOptions {
     std::string experiment;
     std::string output;
     bool fresh = false;
+    bool lists = false;
+    bool is_dry = false;
+    std::vector<std::string> only;
+    std::string against;
+    std::string junit;
+    std::string quality = "full";
 };
 
 /// Thrown where a signal asked the run to end.
@@ -35,7 +47,8 @@ struct Interrupted {};
 /// A new progress bar for every new step. Throws Interrupted once a signal has come.
 class StepProgress {
   public:
-    explicit StepProgress(bool quiet) : quiet_(quiet) {}
+    StepProgress(bool quiet, const findings::Steps& steps)
+        : quiet_(quiet), steps_(steps), start_(std::chrono::steady_clock::now()) {}
 
     void operator()(const std::string& step, double done) {
         if (Interruption::has_come()) {
@@ -46,11 +59,24 @@ class StepProgress {
             step_ = step;
             bar_ = std::make_unique<ProgressBar>(step, quiet_);
         }
-        bar_->update(done);
+        const double all = steps_.all_seconds();
+        if (!(all > 0.0)) {
+            bar_->update(done);
+            return;
+        }
+        // As much faster or slower than expected as it was so far, once that tells.
+        const double finished = steps_.finished_seconds();
+        const double elapsed = seconds_since(start_);
+        constexpr double kTells = 2.0;  // s
+        const double pace = finished > kTells ? elapsed / finished : 1.0;
+        const double left = finished > kTells ? pace * (all - finished) : std::max(0.0, all - elapsed);
+        bar_->update(done, left, fmt::format("{:.0f} % of all", 100.0 * finished / all));
     }
 
   private:
     bool quiet_;
+    const findings::Steps& steps_;
+    std::chrono::steady_clock::time_point start_;
     std::string step_;
     std::unique_ptr<ProgressBar> bar_;
 };
@@ -73,11 +99,11 @@ void print_checks(const std::vector<findings::Check>& checks) {
 }
 
 /// Writes profiles, pictures, report.json and report.html.
-void write_report(const std::filesystem::path& folder, const findings::Findings& found, const Json& report) {
+void write_report(const std::filesystem::path& folder, const findings::Findings& found, const Json& report,
+                  const std::map<std::string, std::string>& pictures) {
     for (const calibration::Profile& profile : found.profiles) {
         calibration::write_profile(profile, folder / "profiles" / (profile.name + ".json"));
     }
-    const std::map<std::string, std::string> pictures = runner::report_pictures(found);
     for (const auto& [name, bytes] : pictures) {
         write_file(folder / "images" / name, bytes);
     }
@@ -92,41 +118,96 @@ void say_what_was_kept(const RunOptions& options, const findings::Steps& steps, 
     }
 }
 
+/// What a run would do, in place of doing it.
+int tell_plan(const RunOptions& options, const runner::Experiment& experiment, const findings::RunSettings& settings) {
+    const std::vector<AwaitedStudy> studies = awaited_studies(experiment, settings);
+    if (prints_text(options.common)) {
+        print("{}", plan_text(studies, options.is_dry));
+    }
+    write_json_result(options.common, plan_json(studies));
+    return kDone;
+}
+
+void say_failures(const findings::Findings& found) {
+    for (const findings::Failure& failure : found.failures) {
+        print_message("lensproof: {}: {}\n", failure.study, failure.message);
+    }
+}
+
+/// The gravest that befell: a failure of the machine, of the input, of a check.
+int exit_status(const findings::Findings& found) {
+    int status = findings::overall(found.checks) == findings::Verdict::pass ? kDone : kCheckFailed;
+    for (const findings::Failure& failure : found.failures) {
+        status = std::max(status, static_cast<int>(failure.is_of_input ? kUnusableInput : kInternalFailure));
+    }
+    return status;
+}
+
+/// The page of the reports that lie beside this one: of the usual folder, or where there is one already.
+void refresh_index(const RunOptions& options, const std::filesystem::path& folder) {
+    const std::filesystem::path around =
+        folder.has_filename() ? folder.parent_path() : folder.parent_path().parent_path();
+    const bool is_ours = runner::has_index(around);
+    if (is_ours || (options.output.empty() && !std::filesystem::exists(around / "index.html"))) {
+        write_file(around / "index.html", runner::index_html(around));
+    }
+}
+
 int run(const RunOptions& options) {
-    const runner::Experiment experiment = runner::read_experiment(options.experiment);
+    const runner::Experiment experiment = runner::with_only(runner::read_experiment(options.experiment), options.only);
     const std::filesystem::path folder =
         options.output.empty() ? std::filesystem::path("output") / std::filesystem::path(options.experiment).stem()
                                : std::filesystem::path(options.output);
+    const std::filesystem::path kept = folder / "steps";
+    const findings::RunSettings settings{
+        .seed = options.common.seed,
+        .quality = options.quality == "draft" ? findings::Quality::draft : findings::Quality::full,
+        .threads = options.common.threads,
+        .cache = Cache::standard(),
+        .steps = runner::steps_kept_in(kept, options.fresh)};
+    if (options.lists || options.is_dry) {
+        return tell_plan(options, experiment, settings);
+    }
+    const std::optional<runner::EarlierReport> earlier =
+        options.against.empty() ? std::nullopt : std::optional(runner::read_earlier_report(options.against));
+    if (!options.junit.empty()) {
+        check_output_name(options.junit);
+    }
     // A folder that cannot be made is better known before the long part than after it.
     check_output_name(folder / "report.html");
     check_output_name(folder / "report.json");
     check_json_name(options.common);
-    const std::filesystem::path kept = folder / "steps";
-    const findings::RunSettings settings{.seed = options.common.seed,
-                                         .threads = options.common.threads,
-                                         .cache = Cache::standard(),
-                                         .steps = runner::steps_kept_in(kept, options.fresh)};
     findings::Findings found;
     try {
         const Interruption interruption;
-        StepProgress progress(options.common.quiet);
+        runner::expect_steps(experiment, settings);
+        StepProgress progress(options.common.quiet, settings.steps);
         found = runner::run_experiment(experiment, settings, std::ref(progress));
     } catch (const Interrupted&) {
         throw std::runtime_error(fmt::format("ended early, with {} steps finished; the same command goes on from {}",
                                              settings.steps.kept() + settings.steps.made(), kept.string()));
     }
     say_what_was_kept(options, settings.steps, kept);
-    const Json report = runner::report_json(experiment, found, settings);
-    const Delivery delivery =
-        write_somewhere({folder}, [&](const std::filesystem::path& place) { write_report(place, found, report); });
-    const findings::Verdict verdict = findings::overall(found.checks);
+    Json report = runner::report_json(experiment, found, settings);
+    const std::map<std::string, std::string> pictures = runner::report_pictures(found);
+    if (earlier) {
+        report["against"] = runner::compared_with(*earlier, report, pictures);
+    }
+    const Delivery delivery = write_somewhere(
+        {folder}, [&](const std::filesystem::path& place) { write_report(place, found, report, pictures); });
+    if (!options.junit.empty()) {
+        write_file(options.junit, runner::junit_xml(experiment.title, found));
+    }
+    refresh_index(options, folder);
+    say_failures(found);
     if (prints_text(options.common)) {
         print_checks(found.checks);
-        print("{}: {}\n", findings::verdict_name(verdict), (delivery.place / "report.html").string());
+        print("{}", earlier ? runner::against_text(report["against"]) : "");
+        print("{}: {}\n", findings::verdict_name(findings::overall(found)), (delivery.place / "report.html").string());
     }
     write_json_result(options.common, report);
     check_place(delivery);
-    return verdict == findings::Verdict::pass ? kDone : kCheckFailed;
+    return exit_status(found);
 }
 
 }  // namespace
@@ -138,6 +219,22 @@ void add_run_command(Program& program) {
     command.add_option("EXPERIMENT", options->experiment, "An experiment file").required();
     command.add_option("-o,--output", options->output, "Folder to write (default: output/EXPERIMENT)").type_name("DIR");
     command.add_flag("--fresh", options->fresh, "Do every step again, also those that an earlier run has finished");
+    command.add_flag("--list", options->lists, "Name its studies and their steps, and do nothing");
+    command.add_flag("--dry-run", options->is_dry,
+                     "Say which steps are kept, which would be done and how long they take, and do nothing");
+    command.add_option("--only", options->only, "Studies to carry out, by name (default: all)").type_name("NAME…");
+    command
+        .add_option(
+            "--quality", options->quality,
+            "draft: pictures of scenes have half the width and height, and a sixteenth of the samples of a pixel")
+        .check(one_of({"draft", "full"}))
+        .shows_default();
+    command
+        .add_option("--against", options->against,
+                    "An earlier report (its folder, or report.json): what changed since, verdict by verdict, number by "
+                    "number and picture by picture")
+        .type_name("OLD");
+    command.add_option("--junit", options->junit, "Write the checks as JUnit's XML too").type_name("FILE");
     add_common_options(command, options->common);
     command.runs([options] { return run(*options); });
 }

@@ -15,6 +15,7 @@ void move_to(std::vector<T>& all, std::vector<T>& more) {
 }  // namespace
 
 void append(Findings& all, Findings more) {
+    move_to(all.failures, more.failures);
     move_to(all.checks, more.checks);
     all.counts_checks |= more.counts_checks;
     if (all.subjects_title.find(more.subjects_title) == std::string::npos) {
@@ -33,9 +34,23 @@ void append(Findings& all, Findings more) {
         move_to(known->series, plot.series);
     }
     move_to(all.maps, more.maps);
-    move_to(all.tables, more.tables);
+    for (auto& [key, table] : more.tables) {
+        const auto known = std::ranges::find(all.tables, key, [](const auto& named) { return named.first; });
+        if (known == all.tables.end() || !known->second.is_list() || !table.is_list()) {
+            all.tables.emplace_back(key, std::move(table));
+            continue;
+        }
+        for (const Json& row : table) {
+            known->second.push_back(row);
+        }
+    }
     move_to(all.profiles, more.profiles);
     move_to(all.inputs, more.inputs);
+}
+
+Verdict overall(const Findings& found) {
+    const Verdict verdict = overall(found.checks);
+    return verdict == Verdict::pass && !found.failures.empty() ? Verdict::inconclusive : verdict;
 }
 
 }  // namespace lensproof::findings

@@ -98,10 +98,18 @@ struct Map {
     draw::FrameMap frame;  // maps of the same label share the range of their colours
 };
 
+/// A study that came to no end, and why.
+struct Failure {
+    std::string study;
+    std::string message;
+    bool is_of_input = false;  // else of the machine: no memory, no room on the disk
+};
+
 /// What subjects are together where a report's page is not told otherwise (experiments/draw/report/report.h).
 inline constexpr const char* kUsualSubjects = "Renders and photos";
 
 struct Findings {
+    std::vector<Failure> failures{};
     std::vector<Check> checks{};
     bool counts_checks = false;    // the report's summary says how many of them hold
     std::string subjects_title{};  // what the subjects are together
@@ -113,7 +121,10 @@ struct Findings {
     std::vector<std::filesystem::path> inputs{};         // files that they depend on
 };
 
-/// Adds `more` to `all`. Plots of the same id become one, with the tighter limit.
+/// Adds `more` to `all`. Plots of the same id become one, with the tighter limit; lists of the same key become one.
 void append(Findings& all, Findings more);
+
+/// That of the checks; where a study failed, it is INCONCLUSIVE at best.
+Verdict overall(const Findings& found);
 
 }  // namespace lensproof::findings

@@ -1,9 +1,12 @@
 // experiments/findings/steps.h — the steps of a run: what is finished once is not done again.
 #pragma once
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +26,14 @@ struct StepInput {
     std::vector<std::filesystem::path> files{};
 };
 
+/// A step that is still to be asked for.
+struct PlannedStep {
+    std::string kind;
+    std::string label;
+    StepInput input;
+    double usual_seconds = 1.0;  // roughly, on two cores, where this machine has not done it before
+};
+
 /// Parts of a run that take long: a picture rendered, a camera measured, a value of a sweep. Each is done once and kept
 /// until something that it follows from changes, so that a run that was ended goes on where it was:
 ///
@@ -40,8 +51,9 @@ class Steps {
 
     /// `program`: what changes wherever the program, or data that ship with it, may lead to another result. `anew`:
     /// does every step again, and keeps what it finds.
-    Steps(Cache kept, std::string program, bool anew)
-        : kept_(std::move(kept)), program_(std::move(program)), anew_(anew) {}
+    /// `times`: where it is written how long steps took, for the next run to say how long it will.
+    Steps(Cache kept, std::string program, bool anew, Cache times = {})
+        : kept_(std::move(kept)), program_(std::move(program)), anew_(anew), times_(std::move(times)) {}
 
     /// What make() gives. `kind`: a word of letters and hyphens; two calls that make different things of the same input
     /// have different ones. What make() throws is not kept; nor is a result that its JSON does not bring back (which
@@ -56,8 +68,10 @@ class Steps {
                 return *std::move(found);
             }
         }
+        const auto start = std::chrono::steady_clock::now();
         Result made = make();
         ++count_->made;
+        finished(kind, input, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         const std::string text = to_json(made).dump();
         std::optional<Result> found = brought_back<Result>(text);
         if (!found) {
@@ -71,8 +85,19 @@ class Steps {
     [[nodiscard]] int kept() const { return count_->kept; }
     [[nodiscard]] int made() const { return count_->made; }
 
+    [[nodiscard]] bool is_kept(const PlannedStep& step) const;
+    /// How long the step will take, as it did before on this machine, or as it usually does; 0 where it is kept.
+    [[nodiscard]] double expected_seconds(const PlannedStep& step) const;
+
+    /// Says what is to come, for `finished_seconds` to count.
+    void expect(const std::vector<PlannedStep>& steps) const;
+    /// Of what was expected: of all, and of what was made since; in the seconds that it was expected to take.
+    [[nodiscard]] double all_seconds() const { return count_->all_seconds; }
+    [[nodiscard]] double finished_seconds() const { return count_->finished_seconds; }
+
   private:
     [[nodiscard]] std::string key_of(const StepInput& input) const;
+    void finished(std::string_view kind, const StepInput& input, double seconds) const;
 
     template <class Result>
     static std::optional<Result> brought_back(const std::string& text) {
@@ -86,11 +111,16 @@ class Steps {
     struct Count {
         std::atomic<int> kept = 0;
         std::atomic<int> made = 0;
+        std::mutex mutex;
+        std::map<std::string, double> expected;  // seconds of a step that is not made yet
+        std::atomic<double> all_seconds = 0.0;
+        std::atomic<double> finished_seconds = 0.0;
     };
 
     Cache kept_;
     std::string program_;
     bool anew_ = false;
+    Cache times_;
     std::shared_ptr<Count> count_ = std::make_shared<Count>();
 };
 

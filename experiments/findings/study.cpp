@@ -25,6 +25,24 @@ std::string read_name(TomlTable& table) {
     return name;
 }
 
+Bound read_bound(TomlTable& table, const Bounds& bounds) {
+    const bool is_between = table.has("between");
+    if (table.has("at_most") + table.has("at_least") + is_between != 1) {
+        table.fail("", "expected one of at_most, at_least and between");
+    }
+    if (is_between) {
+        const std::vector<double> ends = table.numbers("between", 2);
+        const Bound bound{Expectation::within, 0.5 * (ends[1] - ends[0]), 0.5 * (ends[0] + ends[1])};
+        if (!(bound.limit > 0.0)) {
+            table.fail("between", fmt::format("is [{}, {}], expected the lower number first", ends[0], ends[1]));
+        }
+        return bound;
+    }
+    const bool is_most = table.has("at_most");
+    return {is_most ? Expectation::at_most : Expectation::at_least,
+            table.number(is_most ? "at_most" : "at_least", bounds)};
+}
+
 std::vector<std::string> names_of(TomlTable& table, const std::string& key, const std::vector<std::string>& known) {
     std::vector<std::string> names = table.has(key) ? table.texts(key) : std::vector<std::string>{};
     for (const std::string& name : names) {

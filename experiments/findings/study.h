@@ -16,8 +16,15 @@
 
 namespace lensproof::findings {
 
+/// How finely a run looks. A draft is to be looked at in minutes: pictures of scenes have half the width and the height
+/// and a sixteenth of the samples of each pixel, but one at least. What is measured without a picture is the same.
+enum class Quality { full, draft };
+inline constexpr int kDraftShrinks = 2;
+inline constexpr int kDraftSamplesOver = 16;
+
 struct RunSettings {
     std::uint64_t seed = 0;
+    Quality quality = Quality::full;
     int threads = 0;        // 0: as many as the machine has
     Cache cache{};          // for what is found by tracing lenses
     bool self_test = true;  // each measurement says its own floor (calibration/self_test/self_test.h)
@@ -29,7 +36,16 @@ using RunProgress = std::function<void(const std::string& step, double done)>;
 
 /// Carries a study out. The same settings give the same findings, whatever the number of threads; `before` are those of
 /// the studies that stand before it in the list (experiments/runner/experiment.cpp).
-using Study = std::function<Findings(const RunSettings& settings, const RunProgress& progress, const Findings& before)>;
+using CarryOut =
+    std::function<Findings(const RunSettings& settings, const RunProgress& progress, const Findings& before)>;
+
+/// What is asked of one table of an experiment's file.
+struct Study {
+    std::string name;  // `run --only NAME`; another kind's may have the same
+    CarryOut carry_out;
+    /// Its steps, in their order, as far as they are known before any of them is finished; empty: none is.
+    std::function<std::vector<PlannedStep>(const RunSettings& settings)> steps{};
+};
 
 /// An experiment's file while its studies read it.
 struct ExperimentFile {
@@ -43,12 +59,22 @@ struct ExperimentFile {
     void add_subject(const TomlTable& table, const std::string& key, const std::string& id);
 };
 
-/// Takes a study's tables from the file; an empty function where there are none. Throws InputError naming file, line
-/// and key, and where something that the study needs is missing.
-using StudyReader = Study (*)(ExperimentFile& file);
+/// Takes the tables of a kind from the file: a study of each; none where there are none. Throws InputError naming file,
+/// line and key, and where something that a study needs is missing.
+using StudyReader = std::vector<Study> (*)(ExperimentFile& file);
 
 /// The table's `name`, of letters, digits, - and _: files are called by it.
 std::string read_name(TomlTable& table);
+
+/// What a number is held to, as a table states it by at_most, at_least or between = [low, high].
+struct Bound {
+    Expectation expectation = Expectation::at_most;
+    double limit = 0.0;
+    double target = 0.0;
+};
+
+/// The table's; `bounds` are those of the numbers themselves.
+Bound read_bound(TomlTable& table, const Bounds& bounds = kAnyNumber);
 
 /// The names that the table lists under `key`, each of which is among `known`; none where it has no such key.
 std::vector<std::string> names_of(TomlTable& table, const std::string& key, const std::vector<std::string>& known);

@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <exception>
+#include <set>
 
 #include "engine/base/input_error.h"
+#include "engine/base/text.h"
 #include "experiments/studies/cameras/comparisons.h"
 #include "experiments/studies/cameras/photos.h"
 #include "experiments/studies/cameras/simulations.h"
@@ -55,8 +58,8 @@ Experiment read_experiment(const std::filesystem::path& path) {
         .file = path, .title = file.top.text("title"), .summary = file.top.text_or("summary", ""), .studies = {}};
     std::vector<std::string> expected;
     for (const StudyKind& kind : kStudies) {
-        if (findings::Study study = kind.read(file)) {
-            experiment.studies.push_back(std::move(study));
+        for (findings::Study& study : kind.read(file)) {
+            experiment.studies.emplace_back(kind.tables, std::move(study));
         }
         if (kind.stands_alone) {
             expected.emplace_back(kind.tables);
@@ -69,19 +72,58 @@ Experiment read_experiment(const std::filesystem::path& path) {
     return experiment;
 }
 
+Experiment with_only(Experiment experiment, const std::vector<std::string>& names) {
+    std::set<std::string> known;
+    for (const auto& [table, study] : experiment.studies) {
+        known.insert(study.name);
+    }
+    for (const std::string& name : names) {
+        if (!known.contains(name)) {
+            throw InputError(fmt::format("--only names \"{}\", expected a study of {}: {}", printable(name),
+                                         experiment.file.string(), fmt::join(known, ", ")));
+        }
+    }
+    std::erase_if(experiment.studies,
+                  [&](const auto& study) { return !findings::is_wanted(names, study.second.name); });
+    experiment.only = names;
+    return experiment;
+}
+
+void expect_steps(const Experiment& experiment, const findings::RunSettings& settings) {
+    for (const auto& [table, study] : experiment.studies) {
+        if (study.steps) {
+            settings.steps.expect(study.steps(settings));
+        }
+    }
+}
+
 findings::Findings run_experiment(const Experiment& experiment, const findings::RunSettings& settings,
                                   const findings::RunProgress& progress) {
     findings::Findings found{.inputs = {experiment.file}};
-    for (const findings::Study& study : experiment.studies) {
+    std::exception_ptr first;
+    const auto fail = [&](const std::string& study, const std::string& message, bool is_of_input) {
+        found.failures.push_back({.study = study, .message = message, .is_of_input = is_of_input});
+        first = first ? first : std::current_exception();
+    };
+    for (const auto& [table, study] : experiment.studies) {
         try {
-            findings::append(found, study(settings, progress, found));
+            findings::append(found, study.carry_out(settings, progress, found));
         } catch (const InputError& error) {
-            const std::string said = error.what();
-            const std::string file = experiment.file.string();
-            throw InputError(said.starts_with(file) ? said : fmt::format("{}: {}", file, said));
+            fail(study.name, error.what(), true);
+        } catch (const std::exception& error) {
+            fail(study.name, error.what(), false);
         }
     }
-    return found;
+    if (found.failures.size() < experiment.studies.size() || !first) {
+        return found;
+    }
+    try {
+        std::rethrow_exception(first);
+    } catch (const InputError& error) {
+        const std::string said = error.what();
+        const std::string file = experiment.file.string();
+        throw InputError(said.starts_with(file) ? said : fmt::format("{}: {}", file, said));
+    }
 }
 
 }  // namespace lensproof::runner

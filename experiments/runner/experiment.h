@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/findings/study.h"
@@ -12,13 +13,24 @@ struct Experiment {
     std::filesystem::path file;
     std::string title;
     std::string summary;
-    std::vector<findings::Study> studies;  // in the order of the list in experiment.cpp
+    /// In the order of the list in experiment.cpp, each with what its table is called in the file: "[[stray_light]]".
+    std::vector<std::pair<std::string, findings::Study>> studies;
+    std::vector<std::string> only{};  // the names that were asked for; empty: all
 };
 
 /// Reads an experiment file (described in experiments/README.md). Throws InputError naming file, line and key.
 Experiment read_experiment(const std::filesystem::path& file);
 
-/// Carries the studies out, one after the other.
+/// The experiment with those of its studies that `names` names alone; no name: with all. Throws InputError for a name
+/// that none has.
+Experiment with_only(Experiment experiment, const std::vector<std::string>& names);
+
+/// Tells the settings' steps what is to come, as far as the studies know it, for the time left.
+void expect_steps(const Experiment& experiment, const findings::RunSettings& settings);
+
+/// Carries the studies out, one after the other. One that throws is a failure among the findings, and the others go on;
+/// where all of them do, the first one's exception is thrown. What is thrown from `progress` and is no std::exception
+/// ends the run.
 findings::Findings run_experiment(const Experiment& experiment, const findings::RunSettings& settings,
                                   const findings::RunProgress& progress);
 

@@ -38,7 +38,7 @@ std::string shipped_data_digest() {
 
 findings::Steps steps_kept_in(const fs::path& folder, bool anew) {
     constexpr std::uintmax_t kLimitBytes = std::uintmax_t{2} << 30U;
-    return {Cache(folder, kLimitBytes), std::string(kStepDigest) + shipped_data_digest(), anew};
+    return {Cache(folder, kLimitBytes), std::string(kStepDigest) + shipped_data_digest(), anew, Cache::standard()};
 }
 
 }  // namespace lensproof::runner

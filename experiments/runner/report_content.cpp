@@ -1,6 +1,7 @@
 #include "experiments/runner/report_content.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -144,19 +145,35 @@ std::string summary_of(const Experiment& experiment, const findings::Findings& f
 }  // namespace
 
 Json report_json(const Experiment& experiment, const findings::Findings& found, const findings::RunSettings& settings) {
-    return report_json(
-        {.title = experiment.title,
-         .summary = summary_of(experiment, found),
-         .settings = {{"seed", settings.seed}},
-         .reproduce = fmt::format("./lensproof run {} --seed {}", portable_path(experiment.file), settings.seed)},
-        found);
+    ReportHead head{
+        .title = experiment.title,
+        .summary = summary_of(experiment, found),
+        .settings = {{"seed", settings.seed}},
+        .reproduce = fmt::format("./lensproof run {} --seed {}", portable_path(experiment.file), settings.seed)};
+    if (settings.quality == findings::Quality::draft) {
+        head.summary += fmt::format(
+            " A draft: pictures of scenes have 1/{} of the width and height and 1/{} of the "
+            "samples of each pixel, one at least.",
+            findings::kDraftShrinks, findings::kDraftSamplesOver);
+        head.settings["quality"] = "draft";
+        head.reproduce += " --quality draft";
+    }
+    if (!experiment.only.empty()) {
+        head.settings["only"] = experiment.only;
+        head.reproduce += fmt::format(" --only {}", fmt::join(experiment.only, " "));
+    }
+    return report_json(head, found);
 }
 
 Json report_json(const ReportHead& head, const findings::Findings& found) {
     Json report{{"schema", "lensproof-report/1"},
                 {"title", head.title},
                 {"summary", head.summary},
-                {"verdict", findings::verdict_name(findings::overall(found.checks))}};
+                {"verdict", findings::verdict_name(findings::overall(found))}};
+    for (const findings::Failure& failure : found.failures) {
+        report["failures"].push_back(
+            {{"study", failure.study}, {"message", failure.message}, {"exit_status", failure.is_of_input ? 2 : 3}});
+    }
     if (found.subjects_title != findings::kUsualSubjects) {
         report["subjects_title"] = found.subjects_title;
     }

@@ -284,6 +284,28 @@ std::string reproduce_html(const Json& report) {
     return "<div class=\"command\"><pre><code id=\"command\">" + command + "</code></pre></div>";
 }
 
+// ---- Failures, and what changed ---------------------------------------------------------------------------------
+
+std::string failures_html(const Json& report) {
+    std::string rows;
+    for (const Json& failure : report["failures"]) {
+        rows += fact_row(text(failure, "study"), text(failure, "message"));
+    }
+    return rows.empty()
+               ? ""
+               : "<h3>Studies that came to no end</h3>\n<table class=\"facts\"><tbody>\n" + rows + "</tbody></table>\n";
+}
+
+std::string against_html(const Json& report) {
+    const Json& against = report["against"];
+    if (!against.is_object()) return "";
+    std::string out = "<h3>Against " + text(against, "report") + "</h3>\n<p>" + text(against, "in_words") + "</p>\n";
+    for (const char* key : {"verdicts", "numbers", "pictures"}) {
+        if (!against[key].empty()) out += table_html(against[key]) + "\n";
+    }
+    return out;
+}
+
 // ---- The page --------------------------------------------------------------------------------------------------
 
 /// Fills each {{name}} in one pass, so that a filled-in text is never looked at again. Unknown names stay.
@@ -314,6 +336,8 @@ std::string report_html(const Json& report, const std::map<std::string, std::str
                                                 {"verdict", verdict_html(report)},
                                                 {"tally", tally_html(report)},
                                                 {"checks", checks_html(report)},
+                                                {"failures", failures_html(report)},
+                                                {"against", against_html(report)},
                                                 {"curves", curves_html(report)},
                                                 {"maps", maps_html(report, files)},
                                                 {"subjects", subjects_html(report, files)},

@@ -31,6 +31,10 @@ namespace lensproof::draw {
 ///                  "target"?: 0 where absent, "verdict", "explanation"?,
 ///                  "subject"?: an id below, for the group's colour,
 ///                  "floor"?: the method's own error, in the same unit}],
+///      "failures"?: [{"study", "message", "exit_status"}],             studies that came to no end
+///      "against"?: {"report", "verdicts": [{"check", "before", "now"}],        what changed since an earlier report
+///                   "numbers": [{"number", "before", "now"}], "pictures": [{"picture", "change", "rms_percent"}],
+///                   "changed_numbers", "compared_numbers"},       of which `numbers` lists the first
 ///      "subjects_title"?: over the subjects; "Renders and photos" where absent,
 ///      "subjects": [{"id", "kind": "simulation" | "photos", "label",
 ///                    "facts"?: [{"label", "value": string or number}], "focal_length_px"?: {"value", "sigma"?},

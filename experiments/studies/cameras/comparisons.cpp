@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/input_error.h"
 #include "experiments/studies/cameras/measured_camera.h"
 
 namespace lensproof::studies {
@@ -81,7 +82,11 @@ findings::Findings compare_all(const std::vector<Comparison>& comparisons,
                         .y_unit = "%"};
     for (const Comparison& comparison : comparisons) {
         const auto profile = [&](const std::string& name) -> const calibration::Profile& {
-            return *std::ranges::find(profiles, name, &calibration::Profile::name);
+            const auto named = std::ranges::find(profiles, name, &calibration::Profile::name);
+            if (named == profiles.end()) {
+                throw InputError(fmt::format("comparisons: {} gave no profile", name));
+            }
+            return *named;
         };
         const calibration::Profile& of = profile(comparison.of);
         const calibration::Profile& with = profile(comparison.with);
@@ -108,7 +113,7 @@ findings::Findings compare_all(const std::vector<Comparison>& comparisons,
 
 }  // namespace
 
-findings::Study read_comparisons(findings::ExperimentFile& file) {
+std::vector<findings::Study> read_comparisons(findings::ExperimentFile& file) {
     std::vector<Comparison> comparisons;
     for (TomlTable& table : file.top.tables("comparisons")) {
         comparisons.push_back(read_one(table, file.cameras));
@@ -116,10 +121,10 @@ findings::Study read_comparisons(findings::ExperimentFile& file) {
     if (comparisons.empty()) {
         return {};
     }
-    return [comparisons = std::move(comparisons)](const findings::RunSettings&, const findings::RunProgress&,
-                                                  const findings::Findings& before) {
-        return compare_all(comparisons, before.profiles);
-    };
+    return {{.name = "comparisons",
+             .carry_out = [comparisons = std::move(comparisons)](
+                              const findings::RunSettings&, const findings::RunProgress&,
+                              const findings::Findings& before) { return compare_all(comparisons, before.profiles); }}};
 }
 
 }  // namespace lensproof::studies

@@ -6,6 +6,6 @@
 namespace lensproof::studies {
 
 /// The cameras are those that the studies before it measure.
-findings::Study read_comparisons(findings::ExperimentFile& file);
+std::vector<findings::Study> read_comparisons(findings::ExperimentFile& file);
 
 }  // namespace lensproof::studies

@@ -198,27 +198,24 @@ std::vector<findings::Check> photo_checks(const MeasuredCamera& camera, const Ph
 
 }  // namespace
 
-findings::Study read_photos(findings::ExperimentFile& file) {
-    std::vector<Photos> all;
+std::vector<findings::Study> read_photos(findings::ExperimentFile& file) {
+    std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("photos")) {
-        all.push_back(read_one(table, file));
+        Photos photos = read_one(table, file);
+        std::string name = photos.name;
+        studies.push_back({std::move(name), [photos = std::move(photos)](const findings::RunSettings& settings,
+                                                                         const findings::RunProgress& progress,
+                                                                         const findings::Findings&) {
+                               MeasuredCamera camera = measure_photos(photos, settings, progress);
+                               findings::Findings found{.checks = photo_checks(camera, photos.expected)};
+                               findings::append(found, camera_findings(std::move(camera)));
+                               found.inputs.push_back(photos.manifest);
+                               std::ranges::copy(photos.set.photos, std::back_inserter(found.inputs));
+                               std::ranges::copy(photos.set.flat_fields, std::back_inserter(found.inputs));
+                               return found;
+                           }});
     }
-    if (all.empty()) {
-        return {};
-    }
-    return [all = std::move(all)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                  const findings::Findings&) {
-        findings::Findings found;
-        for (const Photos& photos : all) {
-            MeasuredCamera camera = measure_photos(photos, settings, progress);
-            findings::append(found, {.checks = photo_checks(camera, photos.expected)});
-            findings::append(found, camera_findings(std::move(camera)));
-            found.inputs.push_back(photos.manifest);
-            std::ranges::copy(photos.set.photos, std::back_inserter(found.inputs));
-            std::ranges::copy(photos.set.flat_fields, std::back_inserter(found.inputs));
-        }
-        return found;
-    };
+    return studies;
 }
 
 }  // namespace lensproof::studies

@@ -5,6 +5,6 @@
 
 namespace lensproof::studies {
 
-findings::Study read_photos(findings::ExperimentFile& file);
+std::vector<findings::Study> read_photos(findings::ExperimentFile& file);
 
 }  // namespace lensproof::studies

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <iterator>
 
 #include "calibration/detection/detect.h"
@@ -226,32 +225,32 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
     return measured;
 }
 
-findings::Study read_simulations(findings::ExperimentFile& file) {
-    std::vector<Simulation> simulations = simulations_of(file);
-    if (simulations.empty()) {
-        return {};
+static findings::Findings simulation_findings(const Simulation& simulation, const findings::RunSettings& settings,
+                                              const findings::RunProgress& progress) {
+    const render::Camera camera(simulation.scene.camera, simulation.scene.spectral, render::PixelFilter{},
+                                settings.cache);
+    MeasuredCamera measured = measure_simulation(simulation, camera, settings, progress);
+    std::vector<findings::Check> checks = closed_loop_checks(measured.subject.id, measured.subject.label,
+                                                             measured.profile, *measured.traced, simulation.limits);
+    findings::Findings found = camera_findings(std::move(measured), simulation.limits);
+    findings::append(found, {.checks = std::move(checks)});
+    found.inputs = formats::shipped_glass_files();
+    std::ranges::move(formats::shipped_transmittance_files(), std::back_inserter(found.inputs));
+    found.inputs.push_back(formats::find_lens_file(simulation.scene.camera.lens));
+    return found;
+}
+
+std::vector<findings::Study> read_simulations(findings::ExperimentFile& file) {
+    std::vector<findings::Study> studies;
+    for (Simulation& simulation : simulations_of(file)) {
+        std::string name = simulation.name;
+        studies.push_back({std::move(name), [simulation = std::move(simulation)](const findings::RunSettings& settings,
+                                                                                 const findings::RunProgress& progress,
+                                                                                 const findings::Findings&) {
+                               return simulation_findings(simulation, settings, progress);
+                           }});
     }
-    return [simulations = std::move(simulations)](const findings::RunSettings& settings,
-                                                  const findings::RunProgress& progress, const findings::Findings&) {
-        findings::Findings found;
-        found.inputs = formats::shipped_glass_files();
-        std::ranges::move(formats::shipped_transmittance_files(), std::back_inserter(found.inputs));
-        // A camera that cannot be is found before the long part begins.
-        std::deque<render::Camera> cameras;
-        for (const Simulation& simulation : simulations) {
-            cameras.emplace_back(simulation.scene.camera, simulation.scene.spectral, render::PixelFilter{},
-                                 settings.cache);
-            found.inputs.push_back(formats::find_lens_file(simulation.scene.camera.lens));
-        }
-        for (std::size_t i = 0; i < simulations.size(); ++i) {
-            MeasuredCamera measured = measure_simulation(simulations[i], cameras[i], settings, progress);
-            std::vector<findings::Check> checks = closed_loop_checks(
-                measured.subject.id, measured.subject.label, measured.profile, *measured.traced, simulations[i].limits);
-            findings::append(found, camera_findings(std::move(measured), simulations[i].limits));
-            findings::append(found, {.checks = std::move(checks)});
-        }
-        return found;
-    };
+    return studies;
 }
 
 }  // namespace lensproof::studies

@@ -34,6 +34,6 @@ std::vector<Simulation> simulations_of(findings::ExperimentFile& file);
 MeasuredCamera measure_simulation(const Simulation& simulation, const render::Camera& camera,
                                   const findings::RunSettings& settings, const findings::RunProgress& progress);
 
-findings::Study read_simulations(findings::ExperimentFile& file);
+std::vector<findings::Study> read_simulations(findings::ExperimentFile& file);
 
 }  // namespace lensproof::studies

@@ -180,6 +180,18 @@ Json setting_json(const EdgeSetting& setting, const EdgeDiffraction& found) {
             {"wave_near_streaks", found.wave.near_streaks}};
 }
 
+constexpr const char* kEdgeStep = "edge-diffraction";
+
+findings::StepInput input_of(const EdgeSetting& setting, const findings::RunSettings& run) {
+    return {.settings = {{"lens", setting.lens},
+                         {"f_number", setting.f_number},
+                         {"blades", setting.blades},
+                         {"curvature", setting.curvature},
+                         {"paths", setting.paths},
+                         {"seed", run.seed}},
+            .files = formats::files_of_lens(setting.lens)};
+}
+
 std::vector<EdgeSetting> read_settings(TomlTable& table, findings::ExperimentFile& file) {
     EdgeSetting setting{.lens = formats::read_lens_name(table),
                         .curvature = table.number_or("curvature", 0.0, {.min = 0.0, .max = 1.0}),
@@ -250,31 +262,23 @@ findings::Findings edge_findings(const MeasuredEdges& measured) {
     return found;
 }
 
-findings::Study read_edge_diffraction(findings::ExperimentFile& file) {
-    std::vector<EdgeSetting> settings;
+std::vector<findings::Study> read_edge_diffraction(findings::ExperimentFile& file) {
+    std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("edge_diffraction")) {
-        std::ranges::move(read_settings(table, file), std::back_inserter(settings));
-    }
-    if (settings.empty()) {
-        return {};
-    }
-    return [settings = std::move(settings)](const findings::RunSettings& run, const findings::RunProgress& progress,
-                                            const findings::Findings&) {
-        MeasuredEdges measured;
-        for (const EdgeSetting& setting : settings) {
-            progress(label_of(setting), 0.0);
-            const findings::StepInput input{.settings = {{"lens", setting.lens},
-                                                         {"f_number", setting.f_number},
-                                                         {"blades", setting.blades},
-                                                         {"curvature", setting.curvature},
-                                                         {"paths", setting.paths},
-                                                         {"seed", run.seed}},
-                                            .files = formats::files_of_lens(setting.lens)};
-            measured.emplace_back(
-                setting, run.steps.step("edge-diffraction", input, [&] { return measure_edges(setting, run.seed); }));
+        for (const EdgeSetting& setting : read_settings(table, file)) {
+            const auto carry_out = [setting](const findings::RunSettings& run, const findings::RunProgress& progress,
+                                             const findings::Findings&) {
+                progress(label_of(setting), 0.0);
+                return edge_findings({{setting, run.steps.step(kEdgeStep, input_of(setting, run),
+                                                               [&] { return measure_edges(setting, run.seed); })}});
+            };
+            studies.push_back({id_of(setting), carry_out, [setting](const findings::RunSettings& run) {
+                                   return std::vector<findings::PlannedStep>{
+                                       {kEdgeStep, label_of(setting), input_of(setting, run), 8.0}};
+                               }});
         }
-        return edge_findings(measured);
-    };
+    }
+    return studies;
 }
 
 }  // namespace lensproof::studies

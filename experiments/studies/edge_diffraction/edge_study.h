@@ -11,7 +11,7 @@ namespace lensproof::studies {
 
 /// Tables with `lens`, lists of `f_numbers` and `blades` (0: a circle), of which every pair is a setting, and optional
 /// `curvature` and `paths`.
-findings::Study read_edge_diffraction(findings::ExperimentFile& file);
+std::vector<findings::Study> read_edge_diffraction(findings::ExperimentFile& file);
 
 using MeasuredEdges = std::vector<std::pair<EdgeSetting, EdgeDiffraction>>;
 

@@ -118,7 +118,7 @@ findings::Subject sweep_subject(const FloorSweep& sweep) {
     return subject;
 }
 
-findings::Study read_measurement_floor(findings::ExperimentFile& file) {
+std::vector<findings::Study> read_measurement_floor(findings::ExperimentFile& file) {
     std::optional<TomlTable> table = file.top.optional_table("measurement_floor");
     if (!table) {
         return {};
@@ -129,19 +129,20 @@ findings::Study read_measurement_floor(findings::ExperimentFile& file) {
     wanted.pictures = table->integer_or("pictures", wanted.pictures, 1, 1000);
     wanted.trials = table->integer_or("trials", wanted.trials, 20, 100000);
     table->finish();
-    return [wanted = std::move(wanted)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                        const findings::Findings&) {
-        findings::Findings found{.counts_checks = true, .subjects_title = "Sweeps"};
-        Json sweeps;
-        for (const auto measure : {measure_detectors, measure_quantities, measure_models, measure_intervals}) {
-            MeasurementFloor part = measure(wanted, settings, progress);
-            std::ranges::move(part.checks, std::back_inserter(found.checks));
-            std::ranges::transform(part.sweeps, std::back_inserter(found.subjects), sweep_subject);
-            std::ranges::transform(part.sweeps, std::back_inserter(sweeps), sweep_json);
-        }
-        found.tables = {{"sweeps", std::move(sweeps)}};
-        return found;
-    };
+    return {{"measurement_floor",
+             [wanted = std::move(wanted)](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                                          const findings::Findings&) {
+                 findings::Findings found{.counts_checks = true, .subjects_title = "Sweeps"};
+                 Json sweeps;
+                 for (const auto measure : {measure_detectors, measure_quantities, measure_models, measure_intervals}) {
+                     MeasurementFloor part = measure(wanted, settings, progress);
+                     std::ranges::move(part.checks, std::back_inserter(found.checks));
+                     std::ranges::transform(part.sweeps, std::back_inserter(found.subjects), sweep_subject);
+                     std::ranges::transform(part.sweeps, std::back_inserter(sweeps), sweep_json);
+                 }
+                 found.tables = {{"sweeps", std::move(sweeps)}};
+                 return found;
+             }}};
 }
 
 }  // namespace lensproof::studies

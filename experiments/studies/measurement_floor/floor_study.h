@@ -10,7 +10,7 @@ namespace lensproof::studies {
 /// "sweeps" has the numbers:
 ///     [{"id", "title", "setting", "parameter", "unit", "error", "error_unit",
 ///       "curves": [{"label", "points": [{"value", "error", "sigma", "found_percent", "trials", "failed"}]}]}]
-findings::Study read_measurement_floor(findings::ExperimentFile& file);
+std::vector<findings::Study> read_measurement_floor(findings::ExperimentFile& file);
 
 /// The sweep's curves in words, and as a chart.
 findings::Subject sweep_subject(const FloorSweep& sweep);

@@ -253,7 +253,7 @@ findings::Findings photographed_findings(const std::vector<PairResult>& results)
     return found;
 }
 
-findings::Study read_photographed_lenses(findings::ExperimentFile& file) {
+std::vector<findings::Study> read_photographed_lenses(findings::ExperimentFile& file) {
     PhotographedSettings wanted;
     std::set<std::pair<std::string, double>> entries;
     for (TomlTable& table : file.top.tables("photographed_lenses")) {
@@ -269,13 +269,15 @@ findings::Study read_photographed_lenses(findings::ExperimentFile& file) {
     if (wanted.pairs.empty()) {
         return {};
     }
-    return [wanted = std::move(wanted)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                        const findings::Findings&) {
-        progress("photographed lenses", 0.0);
-        findings::Findings found = photographed_findings(compare_pairs(wanted.pairs, wanted.others, settings.threads));
-        progress("photographed lenses", 1.0);
-        return found;
-    };
+    return {{"photographed_lenses",
+             [wanted = std::move(wanted)](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                                          const findings::Findings&) {
+                 progress("photographed lenses", 0.0);
+                 findings::Findings found =
+                     photographed_findings(compare_pairs(wanted.pairs, wanted.others, settings.threads));
+                 progress("photographed lenses", 1.0);
+                 return found;
+             }}};
 }
 
 }  // namespace lensproof::studies

@@ -23,7 +23,7 @@ struct PhotographedSettings {
 PhotographedSettings read_photographed_table(TomlTable& table);
 
 /// All tables' pairs; one whose model and crop factor an earlier table has is left out.
-findings::Study read_photographed_lenses(findings::ExperimentFile& file);
+std::vector<findings::Study> read_photographed_lenses(findings::ExperimentFile& file);
 
 /// The population's checks (the right prescriptions' median, how many others the right one beats in the median), the
 /// population drawn, each pair a subject; with a table "photographed_lenses":

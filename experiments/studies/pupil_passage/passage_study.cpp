@@ -133,6 +133,13 @@ findings::Subject subject_of(const Passage& passage) {
     return subject;
 }
 
+constexpr const char* kPassageStep = "passage";
+
+findings::StepInput input_of(const PassageSetting& setting, const findings::RunSettings& settings) {
+    return {.settings = {{"lens", setting.lens}, {"f_number", setting.f_number}, {"seed", settings.seed}},
+            .files = formats::files_of_lens(setting.lens)};
+}
+
 }  // namespace
 
 PassageSetting read_passage_setting(TomlTable& table) {
@@ -182,30 +189,25 @@ findings::Findings passage_findings(const std::vector<Passage>& passages) {
     return found;
 }
 
-findings::Study read_pupil_passage(findings::ExperimentFile& file) {
-    std::vector<PassageSetting> wanted;
+std::vector<findings::Study> read_pupil_passage(findings::ExperimentFile& file) {
+    std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("pupil_passage")) {
-        wanted.push_back(read_passage_setting(table));
-        file.add_subject(table, "lens", id_of(wanted.back()));
-    }
-    if (wanted.empty()) {
-        return {};
-    }
-    return [wanted = std::move(wanted)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                        const findings::Findings&) {
-        std::vector<Passage> passages;
-        for (const PassageSetting& setting : wanted) {
+        const PassageSetting setting = read_passage_setting(table);
+        file.add_subject(table, "lens", id_of(setting));
+        const auto carry_out = [setting](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                                         const findings::Findings&) {
+            progress(id_of(setting), 0.0);
             optics::Lens lens = passage_lens(setting);
-            PassageCounts counts = settings.steps.step(
-                "passage",
-                {.settings = {{"lens", setting.lens}, {"f_number", setting.f_number}, {"seed", settings.seed}},
-                 .files = formats::files_of_lens(setting.lens)},
-                [&] { return count_passage(lens, settings.seed); });
-            passages.push_back({std::move(counts), setting, std::move(lens)});
-            progress("passage", static_cast<double>(passages.size()) / static_cast<double>(wanted.size()));
-        }
-        return passage_findings(passages);
-    };
+            PassageCounts counts = settings.steps.step(kPassageStep, input_of(setting, settings),
+                                                       [&] { return count_passage(lens, settings.seed); });
+            return passage_findings({{std::move(counts), setting, std::move(lens)}});
+        };
+        studies.push_back({id_of(setting), carry_out, [setting](const findings::RunSettings& settings) {
+                               return std::vector<findings::PlannedStep>{
+                                   {kPassageStep, "paths that leave the front", input_of(setting, settings), 2.0}};
+                           }});
+    }
+    return studies;
 }
 
 }  // namespace lensproof::studies

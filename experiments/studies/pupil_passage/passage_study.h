@@ -14,7 +14,7 @@ namespace lensproof::studies {
 PassageSetting read_passage_setting(TomlTable& table);
 
 /// The settings run one after the other.
-findings::Study read_pupil_passage(findings::ExperimentFile& file);
+std::vector<findings::Study> read_pupil_passage(findings::ExperimentFile& file);
 
 /// Of each setting: what pupil sampling loses of all paths, at most 3 %; of those of any ring, at most 10 %; and, where
 /// something is published, that no more is lost than there.

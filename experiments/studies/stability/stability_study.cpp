@@ -184,7 +184,17 @@ findings::Findings stability_findings(const std::vector<StabilitySweep>& sweeps)
     return found;
 }
 
-findings::Study read_stability(findings::ExperimentFile& file) {
+namespace {
+
+constexpr const char* kExtremeStep = "extreme";
+
+findings::StepInput input_of(const Extreme& extreme, const findings::RunSettings& settings) {
+    return {.settings = {{"id", extreme.id}, {"seed", settings.seed}}};
+}
+
+}  // namespace
+
+std::vector<findings::Study> read_stability(findings::ExperimentFile& file) {
     std::optional<TomlTable> table = file.top.optional_table("stability");
     if (!table) {
         return {};
@@ -198,8 +208,16 @@ findings::Study read_stability(findings::ExperimentFile& file) {
     for (const Extreme& extreme : extremes) {
         file.add_subject(*table, "extremes", extreme.id);
     }
-    return [extremes = std::move(extremes)](const findings::RunSettings& settings,
-                                            const findings::RunProgress& progress, const findings::Findings&) {
+    const auto planned = [extremes](const findings::RunSettings& settings) {
+        std::vector<findings::PlannedStep> steps;
+        std::ranges::transform(extremes, std::back_inserter(steps), [&](const Extreme& extreme) {
+            return findings::PlannedStep{kExtremeStep, extreme.id, input_of(extreme, settings), 3.0};
+        });
+        return steps;
+    };
+    const auto carry_out = [extremes = std::move(extremes)](const findings::RunSettings& settings,
+                                                            const findings::RunProgress& progress,
+                                                            const findings::Findings&) {
         std::vector<StabilitySweep> sweeps(extremes.size());
         const int count = static_cast<int>(extremes.size());
         parallel_for(
@@ -207,13 +225,14 @@ findings::Study read_stability(findings::ExperimentFile& file) {
             [&](int i) {
                 const auto at = static_cast<std::size_t>(i);
                 sweeps[at] = {.extreme = extremes[at],
-                              .points = settings.steps.step(
-                                  "extreme", {.settings = {{"id", extremes[at].id}, {"seed", settings.seed}}},
-                                  [&] { return measure_stability(extremes[at], settings.seed).points; })};
+                              .points = settings.steps.step(kExtremeStep, input_of(extremes[at], settings), [&] {
+                                  return measure_stability(extremes[at], settings.seed).points;
+                              })};
             },
             [&](int done) { progress("extremes", static_cast<double>(done) / count); });
         return stability_findings(sweeps);
     };
+    return {{"stability", carry_out, planned}};
 }
 
 }  // namespace lensproof::studies

@@ -11,7 +11,7 @@
 namespace lensproof::studies {
 
 /// `extremes`: ids of those wanted; all, where the key is missing. They run one after the other on one thread each.
-findings::Study read_stability(findings::ExperimentFile& file);
+std::vector<findings::Study> read_stability(findings::ExperimentFile& file);
 
 /// One check for each extreme: a double's error as a fraction of its bound. Then those on all rays together: the right
 /// status, finite numbers, packets that have the scalar's bits.

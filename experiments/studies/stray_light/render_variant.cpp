@@ -7,7 +7,6 @@
 #include <functional>
 #include <iterator>
 #include <memory>
-#include <type_traits>
 #include <utility>
 
 #include "engine/analysis/ghosts.h"
@@ -67,13 +66,18 @@ class VariantSteps {
   public:
     VariantSteps(const StrayScene& scene, const StrayVariant& variant, const findings::RunSettings& settings,
                  const findings::RunProgress& progress)
-        : scene_(scene), variant_(variant), settings_(settings), progress_(progress), files_(files_of(variant)) {}
+        : scene_(scene),
+          variant_(variant),
+          settings_(settings),
+          progress_(progress),
+          files_(files_of(variant)),
+          setup_(is_draft() ? render::coarser(variant.setup, findings::kDraftShrinks, findings::kDraftSamplesOver)
+                            : variant.setup) {}
 
     [[nodiscard]] PassPicture pass(std::size_t index) {
         const std::string& name = scene_.passes[index];
-        const auto asked = scene_.samples_per_pixel.find(name);
-        const int samples = asked == scene_.samples_per_pixel.end() ? variant_.setup.samples_per_pixel : asked->second;
-        return step("stray-pass", {{"passes", scene_.passes}, {"pass", name}, {"samples_per_pixel", samples}}, [&] {
+        const int samples = samples_of(name);
+        return settings_.steps.step(kPass, pass_input(name), [&] {
             const render::Film film =
                 render::render_film(renders().at(index), {.first = 0, .end = static_cast<std::uint32_t>(samples)},
                                     settings_.threads, [&](double done) { progress_(name_of(name), done); });
@@ -82,20 +86,20 @@ class VariantSteps {
     }
 
     [[nodiscard]] std::vector<GhostEnergy> ghosts(double source_deg) {
-        return step("stray-ghosts", {{"source_deg", source_deg}}, [&] {
+        return settings_.steps.step(kGhosts, input({{"source_deg", source_deg}}), [&] {
             progress_(name_of("ghosts one by one"), 0.0);
             return surveyed(source_deg);
         });
     }
 
     [[nodiscard]] Estimate veiling_glare() {
-        return step("stray-glare", {}, [&] {
+        return settings_.steps.step(kGlare, input({}), [&] {
             progress_(name_of("veiling glare"), 0.0);
             const analysis::VeilingGlare glare = analysis::veiling_glare(
                 lens(), {.wavelength_nm = kReferenceWavelength_nm,
                          .spot_angle = analysis::tenth_of_field(lens(), kReferenceWavelength_nm),
-                         .object_distance = variant_.setup.camera.focus_distance_mm,
-                         .mirrors = variant_.setup.camera.mirrors,
+                         .object_distance = setup_.camera.focus_distance_mm,
+                         .mirrors = setup_.camera.mirrors,
                          .seed = settings_.seed,
                          .threads = settings_.threads});
             return Estimate{glare.index.share, glare.index.standard_error};
@@ -103,7 +107,7 @@ class VariantSteps {
     }
 
     [[nodiscard]] std::vector<std::pair<std::string, Estimate>> fates() {
-        const std::vector<Estimate> shares = step("stray-audit", {}, [&] {
+        const std::vector<Estimate> shares = settings_.steps.step(kAudit, input({}), [&] {
             progress_(name_of("energy audit"), 0.0);
             std::vector<Estimate> found;
             for (const render::EnergyShare& share : prepared().audit(settings_.seed, kAuditPaths).shares) {
@@ -117,12 +121,51 @@ class VariantSteps {
         return named;
     }
 
+    [[nodiscard]] std::vector<findings::PlannedStep> planned() const {
+        std::vector<findings::PlannedStep> steps;
+        const double pixels = static_cast<double>(setup_.camera.sensor.width) * setup_.camera.sensor.height;
+        for (const std::string& pass : scene_.passes) {
+            constexpr double kSecondsOfSample = 3e-6;  // of the passes' usual scenes
+            steps.push_back(
+                {kPass, name_of(pass), pass_input(pass), 1.0 + kSecondsOfSample * pixels * samples_of(pass)});
+        }
+        if (scene_.ghosts_deg) {
+            steps.push_back({kGhosts, name_of("ghosts one by one"), input({{"source_deg", *scene_.ghosts_deg}}), 5.0});
+        }
+        if (scene_.has_veiling_glare) {
+            steps.push_back({kGlare, name_of("veiling glare"), input({}), 10.0});
+        }
+        if (scene_.has_audit) {
+            steps.push_back({kAudit, name_of("energy audit"), input({}), 5.0});
+        }
+        return steps;
+    }
+
   private:
-    template <class Make>
-    std::invoke_result_t<Make> step(std::string_view kind, Json what, const Make& make) {
+    static constexpr const char* kPass = "stray-pass";
+    static constexpr const char* kGhosts = "stray-ghosts";
+    static constexpr const char* kGlare = "stray-glare";
+    static constexpr const char* kAudit = "stray-audit";
+
+    [[nodiscard]] findings::StepInput input(Json what) const {
         what["scene"] = variant_.stated;
         what["seed"] = settings_.seed;
-        return settings_.steps.step(kind, {.settings = std::move(what), .files = files_}, make);
+        what["draft"] = is_draft();
+        return {.settings = std::move(what), .files = files_};
+    }
+
+    [[nodiscard]] findings::StepInput pass_input(const std::string& pass) const {
+        return input({{"passes", scene_.passes}, {"pass", pass}, {"samples_per_pixel", samples_of(pass)}});
+    }
+
+    [[nodiscard]] bool is_draft() const { return settings_.quality == findings::Quality::draft; }
+
+    [[nodiscard]] int samples_of(const std::string& pass) const {
+        const auto asked = scene_.samples_per_pixel.find(pass);
+        if (asked == scene_.samples_per_pixel.end()) {
+            return setup_.samples_per_pixel;
+        }
+        return is_draft() ? std::max(1, asked->second / findings::kDraftSamplesOver) : asked->second;
     }
 
     [[nodiscard]] std::string name_of(const std::string& what) const {
@@ -132,7 +175,7 @@ class VariantSteps {
     render::PreparedScene& prepared() {
         if (!prepared_) {
             progress_(name_of("loading"), 0.0);
-            prepared_ = std::make_unique<render::PreparedScene>(variant_.setup, render::PixelFilter{}, settings_.cache);
+            prepared_ = std::make_unique<render::PreparedScene>(setup_, render::PixelFilter{}, settings_.cache);
         }
         return *prepared_;
     }
@@ -147,13 +190,13 @@ class VariantSteps {
     const optics::Lens& lens() { return prepared().camera().lens().value(); }
 
     std::vector<GhostEnergy> surveyed(double source_deg) {
-        const render::Sensor& sensor = variant_.setup.camera.sensor;
+        const render::Sensor& sensor = setup_.camera.sensor;
         const analysis::GhostSurvey survey = analysis::survey_ghosts(
             lens(), {.reference_wavelength_nm = kReferenceWavelength_nm,
                      .wavelengths_nm = {},
                      .source_angle = source_deg * kDegree,
                      .chief_angle = source_deg * kDegree,
-                     .mirrors = variant_.setup.camera.mirrors,
+                     .mirrors = setup_.camera.mirrors,
                      .image_radius = 0.5 * sensor.pixel_pitch_mm * std::hypot(sensor.width, sensor.height),
                      .sampling = {.seed = settings_.seed},
                      .threads = settings_.threads});
@@ -172,6 +215,7 @@ class VariantSteps {
     const findings::RunSettings& settings_;
     const findings::RunProgress& progress_;
     std::vector<std::filesystem::path> files_;
+    render::SceneSetup setup_;
     std::unique_ptr<render::PreparedScene> prepared_;
     std::vector<render::Render> renders_;
 };
@@ -204,6 +248,12 @@ formats::Image picture_of(const std::vector<PassPicture>& passes) {
         std::ranges::transform(all.pixels, passes[i].rgb.pixels, all.pixels.begin(), std::plus<>());
     }
     return all;
+}
+
+std::vector<findings::PlannedStep> steps_of_variant(const StrayScene& scene, const StrayVariant& variant,
+                                                    const findings::RunSettings& settings) {
+    const findings::RunProgress quiet = [](const std::string&, double) {};
+    return VariantSteps(scene, variant, settings, quiet).planned();
 }
 
 VariantFindings render_variant(const StrayScene& scene, const StrayVariant& variant,

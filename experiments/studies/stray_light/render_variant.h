@@ -51,4 +51,8 @@ formats::Image picture_of(const std::vector<PassPicture>& passes);
 VariantFindings render_variant(const StrayScene& scene, const StrayVariant& variant,
                                const findings::RunSettings& settings, const findings::RunProgress& progress);
 
+/// The steps that this takes.
+std::vector<findings::PlannedStep> steps_of_variant(const StrayScene& scene, const StrayVariant& variant,
+                                                    const findings::RunSettings& settings);
+
 }  // namespace lensproof::studies

@@ -62,25 +62,6 @@ auto by_pass(TomlTable& table, const char* key, const std::vector<std::string>& 
     return found;
 }
 
-void read_bound(TomlTable& table, StrayCheck& check) {
-    const bool is_between = table.has("between");
-    if (table.has("at_most") + table.has("at_least") + is_between != 1) {
-        table.fail("", "expected one of at_most, at_least and between");
-    }
-    if (is_between) {
-        const std::vector<double> ends = table.numbers("between", 2);
-        check.expectation = findings::Expectation::within;
-        check.target = 0.5 * (ends[0] + ends[1]);
-        check.limit = 0.5 * (ends[1] - ends[0]);
-        if (!(check.limit > 0.0)) {
-            table.fail("between", fmt::format("is [{}, {}], expected the lower number first", ends[0], ends[1]));
-        }
-        return;
-    }
-    check.expectation = table.has("at_most") ? findings::Expectation::at_most : findings::Expectation::at_least;
-    check.limit = table.number(table.has("at_most") ? "at_most" : "at_least", kNotNegative);
-}
-
 StrayCheck read_check(TomlTable& table, const StrayScene& scene) {
     std::vector<std::string> lights = scene.passes;
     lights.emplace_back(kPicture);
@@ -104,7 +85,7 @@ StrayCheck read_check(TomlTable& table, const StrayScene& scene) {
     if (check.variant == check.over_variant && check.pass == check.over_pass) {
         table.fail("of", "is set against itself, expected another variant in over, or another pass in over_light");
     }
-    read_bound(table, check);
+    check.bound = findings::read_bound(table, kNotNegative);
     table.finish();
     return check;
 }
@@ -144,6 +125,13 @@ StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
         scene.variants.push_back(read_variant(variant, world, scene, file));
     }
     scene.columns = table.integer_or("columns", static_cast<int>(std::min<std::size_t>(3, variants.size())), 1, 20);
+    if (table.has("crop")) {
+        scene.crop = table.numbers("crop", 4, {.min = 0.0, .max = 1.0});
+        if (!(scene.crop[0] < scene.crop[2] && scene.crop[1] < scene.crop[3])) {
+            table.fail("crop",
+                       "has no inside, expected [left, top, right, bottom], shares of the frame from its upper left");
+        }
+    }
     scene.ghosts_deg = table.optional_number("ghosts_deg", {.min = 0.0, .max = 89.9});
     scene.has_veiling_glare = table.boolean_or("veiling_glare", false);
     scene.has_audit = table.boolean_or("audit", false);

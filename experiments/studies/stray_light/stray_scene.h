@@ -32,9 +32,7 @@ struct StrayCheck {
     int surface = 0;        // from 1
     std::string variant;
     std::string over_variant;
-    findings::Expectation expectation = findings::Expectation::at_most;
-    double limit = 0.0;
-    double target = 0.0;
+    findings::Bound bound;
 };
 
 inline constexpr const char* kPicture = "picture";  // all passes together
@@ -49,6 +47,7 @@ struct StrayScene {
     std::map<std::string, double> brightening_ev;  // of a pass's picture
     std::vector<StrayVariant> variants;
     int columns = 0;                   // of the variants side by side
+    std::vector<double> crop;          // left, top, right, bottom of what is shown, shares of the frame; empty: all
     std::optional<double> ghosts_deg;  // the field angle of a distant light whose ghosts are listed
     bool has_veiling_glare = false;
     bool has_audit = false;

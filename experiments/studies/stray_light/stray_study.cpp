@@ -15,7 +15,7 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr int kShownWidth = 720;     // px, of a variant's picture
+constexpr int kShownWidth = 1200;    // px, of a variant's picture
 constexpr int kSheetWidth = 1800;    // and of all together
 constexpr std::size_t kListed = 20;  // ghosts in a chart
 
@@ -70,6 +70,24 @@ formats::Image brightened(formats::Image image, double ev) {
     return image;
 }
 
+/// The part of a picture that the scene's table wants to be shown.
+formats::Image shown_part(const StrayScene& scene, formats::Image image) {
+    if (scene.crop.empty()) {
+        return image;
+    }
+    const auto place = [](double share, int size) { return static_cast<int>(std::lround(share * size)); };
+    const int left = place(scene.crop[0], image.width);
+    const int top = place(scene.crop[1], image.height);
+    formats::Image part = formats::make_image(std::max(1, place(scene.crop[2], image.width) - left),
+                                              std::max(1, place(scene.crop[3], image.height) - top), image.channels);
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(part.width) * part.channel_count();
+    for (int y = 0; y < part.height; ++y) {
+        const int from = std::min(top + y, image.height - 1);
+        std::copy_n(&image.at(std::min(left, image.width - part.width), from, 0), row, &part.at(0, y, 0));
+    }
+    return part;
+}
+
 std::string caption_of(const std::string& pass, double ev) {
     return ev == 0.0 ? pass : fmt::format("{}, {:+g} EV", pass, ev);
 }
@@ -111,7 +129,8 @@ std::vector<findings::Picture> contact_sheets(const StrayScene& scene, const std
     std::vector<findings::Picture> sheets;
     const auto add = [&](const std::string& pass, double ev, const auto& image_of) {
         std::vector<formats::Image> images;
-        std::ranges::transform(variants, std::back_inserter(images), image_of);
+        std::ranges::transform(variants, std::back_inserter(images),
+                               [&](const VariantFindings& variant) { return shown_part(scene, image_of(variant)); });
         sheets.push_back(findings::shown_picture(fmt::format("{}/{}.png", scene.name, pass),
                                                  fmt::format("{}: {}", caption_of(pass, ev), sheet_words(scene)),
                                                  contact_sheet(images, scene.columns), kSheetWidth));
@@ -167,12 +186,12 @@ findings::Subject subject_of(const StrayScene& scene, const StrayVariant& varian
         subject.facts.push_back({pass.pass + ", of the picture's light", percent(ratio(pass.light, all))});
         const double ev = brightening(scene, pass.pass);
         subject.pictures.push_back(findings::shown_picture(fmt::format("{}/{}.png", subject.id, pass.pass),
-                                                           caption_of(pass.pass, ev), brightened(pass.rgb, ev),
-                                                           kShownWidth));
+                                                           caption_of(pass.pass, ev),
+                                                           shown_part(scene, brightened(pass.rgb, ev)), kShownWidth));
     }
     subject.pictures.insert(subject.pictures.begin(),
                             findings::shown_picture(fmt::format("{}/picture.png", subject.id), "all together",
-                                                    picture_of(found.passes), kShownWidth));
+                                                    shown_part(scene, picture_of(found.passes)), kShownWidth));
     if (found.veiling_glare) {
         subject.facts.push_back({"veiling glare index", percent(*found.veiling_glare)});
     }
@@ -221,9 +240,9 @@ std::vector<findings::Check> stray_checks(const StrayScene& scene, const std::ve
                           .value = found.value,
                           .sigma = found.standard_error,
                           .unit = "",
-                          .limit = check.limit,
-                          .expectation = check.expectation,
-                          .target = check.target,
+                          .limit = check.bound.limit,
+                          .expectation = check.bound.expectation,
+                          .target = check.bound.target,
                           .explanation = "Light over light."});
     }
     return checks;
@@ -250,35 +269,32 @@ findings::Findings stray_findings(const StrayScene& scene, const std::vector<Var
     for (const StrayVariant& variant : scene.variants) {
         std::ranges::move(files_of(variant), std::back_inserter(found.inputs));
     }
-    found.tables = {{"stray_light", std::move(table)}};
+    found.tables = {{"stray_light", Json::list({std::move(table)})}};
     return found;
 }
 
-findings::Study read_stray_light(findings::ExperimentFile& file) {
-    std::vector<StrayScene> scenes;
+std::vector<findings::Study> read_stray_light(findings::ExperimentFile& file) {
+    std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("stray_light")) {
-        scenes.push_back(read_stray_scene(table, file));
-    }
-    if (scenes.empty()) {
-        return {};
-    }
-    return [scenes = std::move(scenes)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                        const findings::Findings&) {
-        findings::Findings found{.subjects_title = "Scenes"};
-        Json table = Json::list();
-        for (const StrayScene& scene : scenes) {
+        const StrayScene scene = read_stray_scene(table, file);
+        const auto carry_out = [scene](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                                       const findings::Findings&) {
             std::vector<VariantFindings> variants;
             std::ranges::transform(scene.variants, std::back_inserter(variants), [&](const StrayVariant& variant) {
                 return render_variant(scene, variant, settings, progress);
             });
-            findings::Findings more = stray_findings(scene, variants);
-            table.push_back(std::move(more.tables.front().second));
-            more.tables.clear();
-            findings::append(found, std::move(more));
-        }
-        found.tables.emplace_back("stray_light", std::move(table));
-        return found;
-    };
+            return stray_findings(scene, variants);
+        };
+        studies.push_back({scene.name, carry_out, [scene](const findings::RunSettings& settings) {
+                               std::vector<findings::PlannedStep> steps;
+                               for (const StrayVariant& variant : scene.variants) {
+                                   std::ranges::move(steps_of_variant(scene, variant, settings),
+                                                     std::back_inserter(steps));
+                               }
+                               return steps;
+                           }});
+    }
+    return studies;
 }
 
 }  // namespace lensproof::studies

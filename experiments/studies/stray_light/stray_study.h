@@ -8,7 +8,7 @@
 
 namespace lensproof::studies {
 
-findings::Study read_stray_light(findings::ExperimentFile& file);
+std::vector<findings::Study> read_stray_light(findings::ExperimentFile& file);
 
 /// Each check's ratio, with the standard error that those of its two lights leave it.
 std::vector<findings::Check> stray_checks(const StrayScene& scene, const std::vector<VariantFindings>& variants);

@@ -253,8 +253,19 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
     }
     found.subjects.push_back(std::move(subject));
     found.tables = {
-        {"planned", Json{{"name", set.name}, {"tolerance", set.stated_tolerance}, {"cases", std::move(rows)}}}};
+        {"planned",
+         Json::list({Json{{"name", set.name}, {"tolerance", set.stated_tolerance}, {"cases", std::move(rows)}}})}};
     return found;
+}
+
+constexpr const char* kAccountStep = "planned";
+
+findings::StepInput input_of(const PlannedSet& set, const SceneCase& planned, const findings::RunSettings& settings) {
+    return {.settings = {{"scene", planned.stated},
+                         {"name", planned.name},
+                         {"tolerance", set.stated_tolerance},
+                         {"seed", settings.seed}},
+            .files = planned.files};
 }
 
 }  // namespace
@@ -285,19 +296,12 @@ PlannedOutcome hold_to_account(const SceneCase& planned, const Tolerance& tolera
     return outcome;
 }
 
-findings::Study read_planned(findings::ExperimentFile& file) {
-    std::vector<PlannedSet> sets;
+std::vector<findings::Study> read_planned(findings::ExperimentFile& file) {
+    std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("planned")) {
-        sets.push_back(read_set(table, file));
-    }
-    if (sets.empty()) {
-        return {};
-    }
-    return [sets = std::move(sets)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                    const findings::Findings&) {
-        findings::Findings found{.subjects_title = "Plans"};
-        Json table = Json::list();
-        for (const PlannedSet& set : sets) {
+        const PlannedSet set = read_set(table, file);
+        const auto carry_out = [set](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                                     const findings::Findings&) {
             PilotSettings own;
             own.probe.seed = settings.seed;
             own.probe.threads = settings.threads;
@@ -306,22 +310,21 @@ findings::Study read_planned(findings::ExperimentFile& file) {
             for (const SceneCase& planned : set.cases) {
                 progress(fmt::format("{}: {}", set.name, planned.name),
                          static_cast<double>(outcomes.size()) / static_cast<double>(set.cases.size()));
-                outcomes.push_back(settings.steps.step("planned",
-                                                       {.settings = {{"scene", planned.stated},
-                                                                     {"name", planned.name},
-                                                                     {"tolerance", set.stated_tolerance},
-                                                                     {"seed", settings.seed}},
-                                                        .files = planned.files},
+                outcomes.push_back(settings.steps.step(kAccountStep, input_of(set, planned, settings),
                                                        [&] { return hold_to_account(planned, set.tolerance, own); }));
             }
-            findings::Findings more = account_findings(set, outcomes);
-            table.push_back(std::move(more.tables.front().second));
-            more.tables.clear();
-            findings::append(found, std::move(more));
-        }
-        found.tables.emplace_back("planned", std::move(table));
-        return found;
-    };
+            return account_findings(set, outcomes);
+        };
+        studies.push_back(
+            {set.name, carry_out, [set](const findings::RunSettings& settings) {
+                 std::vector<findings::PlannedStep> steps;
+                 std::ranges::transform(set.cases, std::back_inserter(steps), [&](const SceneCase& planned) {
+                     return findings::PlannedStep{kAccountStep, planned.name, input_of(set, planned, settings), 30.0};
+                 });
+                 return steps;
+             }});
+    }
+    return studies;
 }
 
 }  // namespace lensproof::studies

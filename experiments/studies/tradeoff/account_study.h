@@ -35,6 +35,6 @@ bool keeps_tolerance(const PlannedOutcome& outcome, const Tolerance& tolerance);
 /// the scene. Findings: how many keep the tolerance, with the binomial's standard error; that none is slower than the
 /// full model by more than a twentieth; each effect's contribution as predicted against the measured one, and how many
 /// error bars hold it; a table "planned" of all.
-findings::Study read_planned(findings::ExperimentFile& file);
+std::vector<findings::Study> read_planned(findings::ExperimentFile& file);
 
 }  // namespace lensproof::studies

@@ -142,37 +142,37 @@ std::vector<RingError> ring_errors(const optics::Lens& lens, const analysis::Ana
     return errors;
 }
 
-findings::Study read_analysis_rings(findings::ExperimentFile& file) {
-    std::vector<AnalysedLens> lenses;
+static constexpr const char* kRingStep = "analysis-rings";
+
+std::vector<findings::Study> read_analysis_rings(findings::ExperimentFile& file) {
+    std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("analysis_rings")) {
         AnalysedLens analysed{.lens = formats::read_lens_name(table)};
         analysed.f_number = table.has("f_number") ? std::optional(table.number("f_number", kPositive)) : std::nullopt;
         analysed.fields_deg = table.numbers("fields_deg", 0, {.min = -90.0, .max = 90.0});
-        file.add_subject(table, "lens", "rings-" + analysed.lens);
+        const std::string id = "rings-" + analysed.lens;
+        file.add_subject(table, "lens", id);
         table.finish();
-        lenses.push_back(std::move(analysed));
-    }
-    if (lenses.empty()) {
-        return {};
-    }
-    return [lenses = std::move(lenses)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                        const findings::Findings&) {
-        findings::Findings found{.subjects_title = "Analyses"};
-        Json table = Json::list();
-        for (const AnalysedLens& analysed : lenses) {
-            progress(label_of(analysed), static_cast<double>(table.size()) / static_cast<double>(lenses.size()));
-            const findings::StepInput input{.settings = {{"lens", analysed.lens},
-                                                         {"f_number", analysed.f_number.value_or(0.0)},
-                                                         {"fields_deg", analysed.fields_deg}},
-                                            .files = formats::files_of_lens(analysed.lens)};
-            add_findings(analysed,
-                         settings.steps.step("analysis-rings", input, [&] { return measure_rings(analysed); }), found,
-                         table);
+        const findings::StepInput input{.settings = {{"lens", analysed.lens},
+                                                     {"f_number", analysed.f_number.value_or(0.0)},
+                                                     {"fields_deg", analysed.fields_deg}},
+                                        .files = formats::files_of_lens(analysed.lens)};
+        const auto carry_out = [analysed, input](const findings::RunSettings& settings,
+                                                 const findings::RunProgress& progress, const findings::Findings&) {
+            findings::Findings found{.subjects_title = "Analyses"};
+            Json list = Json::list();
+            progress(label_of(analysed), 0.0);
+            add_findings(analysed, settings.steps.step(kRingStep, input, [&] { return measure_rings(analysed); }),
+                         found, list);
             std::ranges::copy(input.files, std::back_inserter(found.inputs));
-        }
-        found.tables = {{"analysis_rings", std::move(table)}};
-        return found;
-    };
+            found.tables = {{"analysis_rings", std::move(list)}};
+            return found;
+        };
+        studies.push_back({id, carry_out, [input, label = label_of(analysed)](const findings::RunSettings&) {
+                               return std::vector<findings::PlannedStep>{{kRingStep, label, input, 10.0}};
+                           }});
+    }
+    return studies;
 }
 
 }  // namespace lensproof::studies

@@ -27,6 +27,6 @@ std::vector<RingError> ring_errors(const optics::Lens& lens, const analysis::Ana
 /// The tables: lens, f_number (optional), fields_deg. Findings: a subject for each lens, with its errors over the time,
 /// and the table "analysis_rings", of {"lens", "rings": [{"rings", "spot_um", "centroid_um", "wavefront_waves",
 /// "milliseconds"}]}.
-findings::Study read_analysis_rings(findings::ExperimentFile& file);
+std::vector<findings::Study> read_analysis_rings(findings::ExperimentFile& file);
 
 }  // namespace lensproof::studies

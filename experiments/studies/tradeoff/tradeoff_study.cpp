@@ -75,25 +75,30 @@ std::vector<TradeoffScene> read_scenes(TomlTable& table, findings::ExperimentFil
     return scenes;
 }
 
+constexpr const char* kTradeoffStep = "tradeoff";
+
+findings::StepInput input_of(const TradeoffScene& scene, const findings::RunSettings& settings) {
+    std::vector<std::string> names;
+    std::ranges::transform(scene.rungs, std::back_inserter(names), &Rung::name);
+    return {.settings = {{"scene", scene.stated},
+                         {"rungs", names},
+                         {"pixels", scene.settings.pixels},
+                         {"samples_per_pixel", scene.settings.samples},
+                         {"seeds", scene.settings.seeds},
+                         {"noise", scene.settings.noise},
+                         {"seed", settings.seed}},
+            .files = scene.files};
+}
+
 MeasuredScene measure(const TradeoffScene& scene, const findings::RunSettings& settings,
                       const findings::RunProgress& progress) {
     TradeoffSettings own = scene.settings;
     own.probe.seed = settings.seed;
     own.probe.threads = settings.threads;
     own.cache = settings.cache;
-    std::vector<std::string> names;
-    std::ranges::transform(scene.rungs, std::back_inserter(names), &Rung::name);
-    MeasuredScene measured{
-        scene, settings.steps.step("tradeoff",
-                                   {.settings = {{"scene", scene.stated},
-                                                 {"rungs", names},
-                                                 {"pixels", own.pixels},
-                                                 {"samples_per_pixel", own.samples},
-                                                 {"seeds", own.seeds},
-                                                 {"noise", own.noise},
-                                                 {"seed", settings.seed}},
-                                    .files = scene.files},
-                                   [&] { return measure_tradeoff(scene.setup, scene.rungs, own, progress); })};
+    MeasuredScene measured{scene, settings.steps.step(kTradeoffStep, input_of(scene, settings), [&] {
+                               return measure_tradeoff(scene.setup, scene.rungs, own, progress);
+                           })};
     compare_rungs(measured.rungs);
     return measured;
 }
@@ -114,7 +119,7 @@ std::vector<Rung> rungs_named(const std::vector<std::string>& names) {
     return rungs;
 }
 
-findings::Study read_tradeoff(findings::ExperimentFile& file) {
+std::vector<findings::Study> read_tradeoff(findings::ExperimentFile& file) {
     std::vector<TradeoffScene> scenes;
     for (TomlTable& table : file.top.tables("tradeoff")) {
         std::ranges::move(read_scenes(table, file), std::back_inserter(scenes));
@@ -122,8 +127,17 @@ findings::Study read_tradeoff(findings::ExperimentFile& file) {
     if (scenes.empty()) {
         return {};
     }
-    return [scenes = std::move(scenes)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                        const findings::Findings&) {
+    const auto planned = [scenes](const findings::RunSettings& settings) {
+        std::vector<findings::PlannedStep> steps;
+        std::ranges::transform(scenes, std::back_inserter(steps), [&](const TradeoffScene& scene) {
+            return findings::PlannedStep{kTradeoffStep, scene.title, input_of(scene, settings), 60.0};
+        });
+        return steps;
+    };
+    // One study for all tables, since what suffices is told of all of them together.
+    const auto carry_out = [scenes = std::move(scenes)](const findings::RunSettings& settings,
+                                                        const findings::RunProgress& progress,
+                                                        const findings::Findings&) {
         std::vector<MeasuredScene> measured;
         for (const TradeoffScene& scene : scenes) {
             measured.push_back(measure(scene, settings, [&](const std::string& rung, double done) {
@@ -133,6 +147,7 @@ findings::Study read_tradeoff(findings::ExperimentFile& file) {
         }
         return tradeoff_findings(measured);
     };
+    return {{"tradeoff", carry_out, planned}};
 }
 
 }  // namespace lensproof::studies

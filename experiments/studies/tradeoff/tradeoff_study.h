@@ -15,6 +15,6 @@ std::vector<std::string> rung_names();
 
 /// The tables: name, title, scene and the rest (experiments/README.md); with cases = [{ name, scene = { … } }], each of
 /// which is put over the scene, one of each case.
-findings::Study read_tradeoff(findings::ExperimentFile& file);
+std::vector<findings::Study> read_tradeoff(findings::ExperimentFile& file);
 
 }  // namespace lensproof::studies

@@ -277,24 +277,22 @@ findings::Findings twins_of(const TwinSettings& settings, const findings::RunSet
 
 }  // namespace
 
-findings::Study read_twins(findings::ExperimentFile& file) {
-    std::vector<TwinSettings> all;
+std::vector<findings::Study> read_twins(findings::ExperimentFile& file) {
+    std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("twins")) {
-        all.push_back(read_one(table, file));
+        TwinSettings twins = read_one(table, file);
+        std::string name = twins.name;
+        studies.push_back({std::move(name), [twins = std::move(twins)](const findings::RunSettings& settings,
+                                                                       const findings::RunProgress& progress,
+                                                                       const findings::Findings& before) {
+                               Json list = Json::list();
+                               findings::Findings found =
+                                   twins_of(twins, settings, progress, profile_of(twins, before), list);
+                               found.tables.emplace_back("twins", std::move(list));
+                               return found;
+                           }});
     }
-    if (all.empty()) {
-        return {};
-    }
-    return [all = std::move(all)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                  const findings::Findings& before) {
-        findings::Findings found;
-        Json table = Json::list();
-        for (const TwinSettings& twins : all) {
-            findings::append(found, twins_of(twins, settings, progress, profile_of(twins, before), table));
-        }
-        found.tables.emplace_back("twins", std::move(table));
-        return found;
-    };
+    return studies;
 }
 
 }  // namespace lensproof::studies

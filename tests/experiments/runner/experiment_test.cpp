@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <stdexcept>
+
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "experiments/runner/report_content.h"
@@ -12,6 +15,17 @@
 namespace lensproof::runner::experiment_test {
 
 using findings::Findings;
+
+/// A study that finds what `find` does.
+std::pair<std::string, findings::Study> study(const std::string& name,
+                                              const std::function<Findings(const Findings& before)>& find) {
+    return {"[[study]]",
+            {name, [find](const findings::RunSettings&, const findings::RunProgress&, const Findings& before) {
+                 return find(before);
+             }}};
+}
+
+const auto kQuiet = [](const std::string&, double) {};
 
 const std::string kPassage = "[[pupil_passage]]\nlens = \"tessar\"\nf_number = 4.0\n";
 
@@ -25,7 +39,7 @@ TEST(Experiment, HoldsStudiesOfAnyKind) {
     EXPECT_EQ(studies_of(kPassage), 1U);
     EXPECT_EQ(studies_of("[stability]\nextremes = [\"field\"]\n[measurement_floor]\n" + kPassage +
                          "[[pupil_passage]]\nlens = \"tessar\"\nf_number = 8.0\n"),
-              3U);
+              4U);
     EXPECT_THROW(studies_of("[stabilitty]\n" + kPassage), InputError);
     EXPECT_TRUE(
         says(complaint_about([&] { studies_of(""); }), "neither [[simulations]] nor [[photos]] nor [stability]"));
@@ -59,17 +73,18 @@ TEST(Experiment, FindingsGoIntoOneReport) {
     const Experiment experiment{.file = file,
                                 .title = "T",
                                 .summary = "S",
-                                .studies = {[&](const auto&, const auto&, const Findings&) { return camera("a", 0.5); },
-                                            [&](const auto&, const auto&, const Findings& before) {
-                                                EXPECT_EQ(before.subjects.size(), 1U);
-                                                return camera("b", 0.2);
-                                            },
-                                            [](const auto&, const auto&, const Findings&) {
+                                .studies = {study("a", [&](const Findings&) { return camera("a", 0.5); }),
+                                            study("b",
+                                                  [&](const Findings& before) {
+                                                      EXPECT_EQ(before.subjects.size(), 1U);
+                                                      return camera("b", 0.2);
+                                                  }),
+                                            study("extremes", [](const Findings&) {
                                                 return Findings{
                                                     .subjects_title = "Extremes",
                                                     .subjects = {{.id = "field", .kind = "rays", .label = "Field"}},
                                                     .tables = {{"extremes", Json::list({1, 2})}}};
-                                            }}};
+                                            })}};
     const Findings found = run_experiment(experiment, {}, [](const std::string&, double) {});
     const Json report = report_json(experiment, found, {});
     EXPECT_EQ(report["summary"], "S 2 of 2 checks hold.");
@@ -79,6 +94,52 @@ TEST(Experiment, FindingsGoIntoOneReport) {
     EXPECT_EQ(report["plots"][0]["series"].size(), 2U);
     EXPECT_EQ(report["plots"][0]["limit"], 0.2);
     EXPECT_EQ(report["extremes"].size(), 2U);
+}
+
+// What one study finds is there, whatever becomes of the others; the report says who failed and of what, and passes
+// not.
+TEST(Experiment, OneStudysFailureLosesNoOthersFindings) {
+    const TestFolder folder;
+    const auto file = folder.path() / "e.toml";
+    write_file(file, "");
+    const auto finds = study("sound", [](const Findings&) {
+        return Findings{.checks = {{.id = "c", .value = 1.0, .limit = 2.0}}, .tables = {{"sound", Json::list({1})}}};
+    });
+    const auto bad_input = study("misled", [](const Findings&) -> Findings { throw InputError("no such lens"); });
+    const auto no_room = study("full", [](const Findings&) -> Findings { throw std::runtime_error("disk full"); });
+    const Experiment experiment{.file = file,
+                                .title = "T",
+                                .summary = "S",
+                                .studies = {bad_input, finds, no_room, study("again", [](const Findings&) {
+                                                return Findings{.tables = {{"sound", Json::list({2})}}};
+                                            })}};
+    const Findings found = run_experiment(experiment, {}, kQuiet);
+    EXPECT_EQ(found.checks.size(), 1U);
+    ASSERT_EQ(found.failures.size(), 2U);
+    EXPECT_TRUE(found.failures[0].is_of_input);
+    EXPECT_FALSE(found.failures[1].is_of_input);
+    const Json report = report_json(experiment, found, {});
+    EXPECT_EQ(report["verdict"], "INCONCLUSIVE");
+    EXPECT_EQ(report["failures"][0]["study"], "misled");
+    EXPECT_EQ(report["failures"][0]["message"], "no such lens");
+    EXPECT_EQ(report["failures"][0]["exit_status"], 2);
+    EXPECT_EQ(report["failures"][1]["exit_status"], 3);
+    EXPECT_EQ(report["sound"].size(), 2U) << "lists of one key are one list";
+
+    const Experiment hopeless{.file = file, .title = "T", .summary = "S", .studies = {bad_input, no_room}};
+    EXPECT_TRUE(says(complaint_about([&] { run_experiment(hopeless, {}, kQuiet); }), "e.toml: no such lens"));
+}
+
+TEST(Experiment, CarriesOutWhatIsAskedForAlone) {
+    const TestFolder folder;
+    const auto file = folder.path() / "e.toml";
+    const auto nothing = [](const Findings&) { return Findings{}; };
+    const Experiment experiment{
+        .file = file, .title = "T", .summary = "S", .studies = {study("a", nothing), study("b", nothing)}};
+    EXPECT_EQ(with_only(experiment, {}).studies.size(), 2U);
+    ASSERT_EQ(with_only(experiment, {"b"}).studies.size(), 1U);
+    EXPECT_EQ(with_only(experiment, {"b"}).studies[0].second.name, "b");
+    EXPECT_TRUE(says(complaint_about([&] { with_only(experiment, {"c"}); }), "names \"c\", expected a study of"));
 }
 
 }  // namespace lensproof::runner::experiment_test

@@ -37,7 +37,7 @@ class TradeoffStudy : public testing::Test {
   protected:
     TradeoffStudy() { write_file(folder_.path() / "scene.toml", kScene); }
 
-    findings::Study read(const std::string& table) {
+    std::vector<findings::Study> read(const std::string& table) {
         const std::filesystem::path file = folder_.path() / "tradeoff.toml";
         write_file(file, "title = \"t\"\n[[tradeoff]]\nname = \"chart\"\nscene = \"scene.toml\"\n" + table);
         findings::ExperimentFile experiment{.top = TomlTable::read(file)};
@@ -49,7 +49,7 @@ class TradeoffStudy : public testing::Test {
 };
 
 TEST_F(TradeoffStudy, SaysWhatSufficesForEachCase) {
-    const findings::Study study = read(R"(title = "A chart"
+    const std::vector<findings::Study> studies = read(R"(title = "A chart"
 rungs = ["thin-lens"]
 pixels = 64
 samples_per_pixel = 1
@@ -57,7 +57,7 @@ seeds = 2
 tolerance = "1000px,100ev,1000de"
 cases = [{ name = "as-it-is" }, { name = "petzval", scene.camera = { lens = "petzval", f_number = 4.0 } }]
 )");
-    const findings::Findings found = study({}, [](const std::string&, double) {}, {});
+    const findings::Findings found = studies.at(0).carry_out({}, [](const std::string&, double) {}, {});
     ASSERT_EQ(found.tables.size(), 2U);
     const Json& scenes = found.tables[0].second;
     ASSERT_EQ(scenes.size(), 2U);
