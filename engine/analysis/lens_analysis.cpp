@@ -85,6 +85,17 @@ double distance_from_front(const optics::Lens& lens, double object_distance) {
     return object_distance + lens.surfaces.front().vertex_z;
 }
 
+optics::Lens with_image_plane(optics::Lens lens, double object_distance, double reference_wavelength_nm) {
+    if (lens.image_z == lens.last_vertex_z()) {
+        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, reference_wavelength_nm);
+        const double image = optics::paraxial_image_distance(traced, distance_from_front(lens, object_distance));
+        if (std::isfinite(image)) {
+            lens.image_z += image;
+        }
+    }
+    return lens;
+}
+
 LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& settings) {
     const ColourOfLens reference(lens, settings.reference_wavelength_nm);
     const double from_front = distance_from_front(lens, settings.object_distance);

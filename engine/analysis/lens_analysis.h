@@ -47,6 +47,9 @@ double largest_field_deg(const AnalysisSettings& settings);
 /// The object's distance from the first vertex where that stands now: focusing groups may have moved it.
 double distance_from_front(const optics::Lens& lens, double object_distance);
 
+/// The lens with its image plane in the paraxial image of such an object, where its source does not say where that is.
+optics::Lens with_image_plane(optics::Lens lens, double object_distance, double reference_wavelength_nm);
+
 struct LensAnalysis {
     std::vector<optics::ParaxialData> paraxial;  // by wavelength, as in the settings
     optics::ParaxialData reference_paraxial;     // at the reference wavelength, as all that follows

@@ -289,6 +289,22 @@ std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count
     return values;
 }
 
+std::vector<double> TomlTable::any_numbers(const std::string& key) {
+    const toml::node& node = require(key);
+    std::vector<double> values;
+    if (const toml::array* array = node.as_array()) {
+        for (const toml::node& element : *array) {
+            if (const std::optional<double> value = element.value<double>(); value && element.is_number()) {
+                values.push_back(*value);
+            }
+        }
+        if (values.size() == array->size()) {
+            return values;
+        }
+    }
+    fail(key, fmt::format("is {}, expected some numbers in brackets", shown(node)));
+}
+
 std::vector<std::vector<double>> TomlTable::number_lists(const std::string& key) {
     const toml::node& node = require(key);
     const toml::array* array = node.as_array();

@@ -57,6 +57,8 @@ class TomlTable {
     std::string choice(const std::string& key, const std::vector<std::string>& choices);
     /// `count` numbers (0: any count).
     std::vector<double> numbers(const std::string& key, std::size_t count, const Bounds& bounds = kAnyNumber);
+    /// Whatever numbers stand there, nan and inf included.
+    std::vector<double> any_numbers(const std::string& key);
     /// Lists of numbers in a list: [[1, 2], [3, 4]].
     std::vector<std::vector<double>> number_lists(const std::string& key);
     std::vector<std::string> texts(const std::string& key);

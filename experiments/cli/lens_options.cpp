@@ -58,14 +58,9 @@ optics::Lens prepared_lens(const LensOptions& options, const optics::Prescriptio
                                          *options.image_distance_mm, kFarthestImage, kFarthestImage));
         }
         lens.image_z = lens.last_vertex_z() + *options.image_distance_mm;
-    } else if (lens.image_z == lens.last_vertex_z()) {  // the source does not say
-        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, reference_wavelength_nm);
-        const double image = optics::paraxial_image_distance(traced, analysis::distance_from_front(lens, distance));
-        if (std::isfinite(image)) {
-            lens.image_z += image;
-        }
+        return lens;
     }
-    return lens;
+    return analysis::with_image_plane(std::move(lens), distance, reference_wavelength_nm);
 }
 
 /// The fields to look at where none are given: the axis and four parts of what the source states, or of what the chief

@@ -18,6 +18,7 @@
 #include "experiments/studies/pupil_passage/passage_study.h"
 #include "experiments/studies/stability/stability_study.h"
 #include "experiments/studies/stray_light/stray_study.h"
+#include "experiments/studies/sweeps/sweep_study.h"
 #include "experiments/studies/tradeoff/account_study.h"
 #include "experiments/studies/tradeoff/ring_study.h"
 #include "experiments/studies/tradeoff/tradeoff_study.h"
@@ -40,6 +41,7 @@ constexpr std::array kStudies = {
     StudyKind{"[[comparisons]]", studies::read_comparisons, false},
     StudyKind{"[[twins]]", studies::read_twins, false},
     StudyKind{"[stability]", studies::read_stability},
+    StudyKind{"[[sweeps]]", studies::read_sweeps},
     StudyKind{"[[pupil_passage]]", studies::read_pupil_passage},
     StudyKind{"[[stray_light]]", studies::read_stray_light},
     StudyKind{"[[edge_diffraction]]", studies::read_edge_diffraction},

@@ -47,8 +47,7 @@ optics::Prescription with_stop_picture(optics::Prescription prescription) {
     return prescription;
 }
 
-std::string read_lens_name(TomlTable& table) {
-    std::string lens = table.text("lens");
+static std::string found_beside(const TomlTable& table, const std::string& lens) {
     if (lens.find_first_of("./") == std::string::npos) {  // no lens that ships has such a name
         return lens;
     }
@@ -58,6 +57,21 @@ std::string read_lens_name(TomlTable& table) {
         std::filesystem::is_regular_file(beside, ignored) ? beside : std::filesystem::path(lens);
     check_reference(table.file(), file);
     return file.string();
+}
+
+std::string read_lens_name(TomlTable& table) {
+    return found_beside(table, table.text("lens"));
+}
+
+std::vector<std::string> read_lens_names(TomlTable& table) {
+    if (table.is_text("lens")) {
+        return {read_lens_name(table)};
+    }
+    std::vector<std::string> lenses;
+    for (const std::string& lens : table.texts("lens")) {
+        lenses.push_back(found_beside(table, lens));
+    }
+    return lenses;
 }
 
 optics::Lens with_transmittance(optics::Lens lens) {

@@ -27,6 +27,9 @@ optics::Prescription with_stop_picture(optics::Prescription prescription);
 /// one, else to the working folder. Throws InputError where check_reference does.
 std::string read_lens_name(TomlTable& table);
 
+/// The same of a list of them, or of one by itself.
+std::vector<std::string> read_lens_names(TomlTable& table);
+
 /// The lens with the internal transmittance of its glasses that ship, which their catalogue leaves out; glass without
 /// data takes nothing.
 optics::Lens with_transmittance(optics::Lens lens);
