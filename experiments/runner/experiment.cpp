@@ -13,6 +13,7 @@
 #include "experiments/studies/cameras/photos.h"
 #include "experiments/studies/cameras/simulations.h"
 #include "experiments/studies/edge_diffraction/edge_study.h"
+#include "experiments/studies/focus_breathing/breathing_study.h"
 #include "experiments/studies/measurement_floor/floor_study.h"
 #include "experiments/studies/photographed_lenses/photographed_study.h"
 #include "experiments/studies/pupil_passage/passage_study.h"
@@ -41,6 +42,7 @@ constexpr std::array kStudies = {
     StudyKind{"[[comparisons]]", studies::read_comparisons, false},
     StudyKind{"[[twins]]", studies::read_twins, false},
     StudyKind{"[stability]", studies::read_stability},
+    StudyKind{"[[focus_breathing]]", studies::read_focus_breathing},
     StudyKind{"[[sweeps]]", studies::read_sweeps},
     StudyKind{"[[pupil_passage]]", studies::read_pupil_passage},
     StudyKind{"[[stray_light]]", studies::read_stray_light},
