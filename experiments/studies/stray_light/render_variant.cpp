@@ -23,7 +23,10 @@ static void fields(JsonArchive& json, Estimate& estimate) {
 }
 
 static void fields(JsonArchive& json, PassPicture& picture) {
-    json.field("pass", picture.pass).field("rgb", picture.rgb).field("light", picture.light);
+    json.field("pass", picture.pass)
+        .field("rgb", picture.rgb)
+        .field("light", picture.light)
+        .field("noise", picture.noise);
 }
 
 static void fields(JsonArchive& json, GhostEnergy& ghost) {
@@ -44,7 +47,28 @@ Estimate sum(const std::vector<Estimate>& terms) {
     return all;
 }
 
-/// Errors of R, G and B are taken to go together, those of pixels not.
+/// Errors of R, G and B are taken to go together.
+double error_of(const render::PixelEstimate& pixel) {
+    return (std::sqrt(pixel.variance.x) + std::sqrt(pixel.variance.y) + std::sqrt(pixel.variance.z)) / 3.0;
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+double noise_of(const render::Film& film) {
+    std::vector<double> errors;
+    for (int y = 0; y < film.height(); ++y) {
+        for (int x = 0; x < film.width(); ++x) {
+            errors.push_back(error_of(film.estimate(x, y)));
+        }
+    }
+    return median(std::move(errors));
+}
+
+/// Errors of pixels do not go together.
 Estimate light_of(const render::Film& film) {
     double light = 0.0;
     double variance = 0.0;
@@ -52,8 +76,7 @@ Estimate light_of(const render::Film& film) {
         for (int x = 0; x < film.width(); ++x) {
             const render::PixelEstimate pixel = film.estimate(x, y);
             light += (pixel.rgb.x + pixel.rgb.y + pixel.rgb.z) / 3.0;
-            const double error =
-                (std::sqrt(pixel.variance.x) + std::sqrt(pixel.variance.y) + std::sqrt(pixel.variance.z)) / 3.0;
+            const double error = error_of(pixel);
             variance += error * error;
         }
     }
@@ -81,7 +104,8 @@ class VariantSteps {
             const render::Film film =
                 render::render_film(renders().at(index), {.first = 0, .end = static_cast<std::uint32_t>(samples)},
                                     settings_.threads, [&](double done) { progress_(name_of(name), done); });
-            return PassPicture{.pass = name, .rgb = render::film_rgb(film), .light = light_of(film)};
+            return PassPicture{
+                .pass = name, .rgb = render::film_rgb(film), .light = light_of(film), .noise = noise_of(film)};
         });
     }
 
@@ -240,6 +264,15 @@ Estimate VariantFindings::ghost_energy(int surface, bool is_involved) const {
         }
     }
     return sum(energies);
+}
+
+double VariantFindings::noise() const {
+    const formats::Image picture = picture_of(passes);
+    double squares = 0.0;
+    for (const PassPicture& pass : passes) {
+        squares += pass.noise * pass.noise;
+    }
+    return std::sqrt(squares) / median({picture.pixels.begin(), picture.pixels.end()});
 }
 
 formats::Image picture_of(const std::vector<PassPicture>& passes) {

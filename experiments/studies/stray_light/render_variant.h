@@ -23,6 +23,7 @@ struct PassPicture {
     std::string pass;
     formats::Image rgb;  // linear, 1 = saturation
     Estimate light;      // the mean of R, G and B over the picture
+    double noise = 0.0;  // of a pixel's mean of R, G and B the standard error; the median over the picture
 };
 
 /// A ghost of two reflections.
@@ -39,6 +40,8 @@ struct VariantFindings {
 
     /// Of a pass, or of all together.
     [[nodiscard]] Estimate light(const std::string& pass) const;
+    /// Of a pixel of all together, over its light, both medians over the picture.
+    [[nodiscard]] double noise() const;
     /// Of the ghosts that the surface reflects, or of the others.
     [[nodiscard]] Estimate ghost_energy(int surface, bool is_involved) const;
 };

@@ -192,6 +192,7 @@ findings::Subject subject_of(const StrayScene& scene, const StrayVariant& varian
     subject.pictures.insert(subject.pictures.begin(),
                             findings::shown_picture(fmt::format("{}/picture.png", subject.id), "all together",
                                                     shown_part(scene, picture_of(found.passes)), kShownWidth));
+    subject.facts.push_back({"noise of a pixel, the median", fmt::format("{:.2g} %", 100.0 * found.noise())});
     if (found.veiling_glare) {
         subject.facts.push_back({"veiling glare index", percent(*found.veiling_glare)});
     }
@@ -206,6 +207,7 @@ Json variant_json(const StrayVariant& variant, const VariantFindings& found) {
     for (const PassPicture& pass : found.passes) {
         json["light"][pass.pass] = {{"mean", pass.light.value}, {"standard_error", pass.light.standard_error}};
     }
+    json["noise_percent"] = 100.0 * found.noise();
     for (const GhostEnergy& ghost : found.ghosts) {
         json["ghosts"].push_back({{"surfaces", ghost.surfaces},
                                   {"energy", ghost.energy.value},

@@ -131,6 +131,9 @@ findings::Picture family_chart(const Sweep& sweep, const std::vector<SweepValue>
                          .panels = {},
                          .columns = panels.empty() ? 1 : std::min(kMostColumns, panels.back().size()),
                          .frame = {.width = 250.0, .height = 190.0}};
+    if (grid.columns == 1) {
+        grid.frame = {.width = 520.0, .height = 300.0};  // titles have room
+    }
     for (std::size_t i = 0; i < combinations(panels); ++i) {
         const std::vector<std::size_t> places = place_of(panels, i);
         grid.panels.push_back({.title = places_text(sweep, axes, places),
