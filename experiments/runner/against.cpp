@@ -38,7 +38,7 @@ void collect_numbers(const Json& json, const std::string& where, std::map<std::s
         numbers.emplace(where, json.number());
     }
     for (const auto& [key, value] : json.members()) {
-        collect_numbers(value, where.empty() ? key : where + "." + key, numbers);
+        collect_numbers(value, where.empty() ? key : fmt::format("{}.{}", where, key), numbers);
     }
     for (std::size_t i = 0; i < json.elements().size(); ++i) {
         collect_numbers(json[i], fmt::format("{}[{}]", where, name_in(json, i)), numbers);

@@ -1,6 +1,7 @@
 #include "engine/formats/prescription/load_lens.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "engine/base/file.h"
@@ -68,9 +69,8 @@ std::vector<std::string> read_lens_names(TomlTable& table) {
         return {read_lens_name(table)};
     }
     std::vector<std::string> lenses;
-    for (const std::string& lens : table.texts("lens")) {
-        lenses.push_back(found_beside(table, lens));
-    }
+    std::ranges::transform(table.texts("lens"), std::back_inserter(lenses),
+                           [&](const std::string& lens) { return found_beside(table, lens); });
     return lenses;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <limits>
 
 #include "experiments/draw/chart.h"
@@ -63,12 +65,13 @@ std::vector<draw::ChartCurve> curves_of(const Sweep& sweep, const std::vector<Sw
         for (std::size_t q = 0; q < family.size(); ++q) {
             const std::string quantity = sweep_quantity(family[q]).label;
             const std::string value = curves == nullptr ? "" : curves->label(c);
-            draw::ChartCurve curve{.label = value + (value.empty() || quantity.empty() ? "" : ", ") + quantity,
-                                   .points = {},
-                                   .colour = colour_of(curves, curves == nullptr ? q : c),
-                                   .line = q == 0 ? draw::CurveLine::solid : draw::CurveLine::dashed,
-                                   .marker = draw::CurveMarker::dot,
-                                   .marker_size = 3.5};
+            draw::ChartCurve curve{
+                .label = fmt::format("{}{}{}", value, value.empty() || quantity.empty() ? "" : ", ", quantity),
+                .points = {},
+                .colour = colour_of(curves, curves == nullptr ? q : c),
+                .line = q == 0 ? draw::CurveLine::solid : draw::CurveLine::dashed,
+                .marker = draw::CurveMarker::dot,
+                .marker_size = 3.5};
             for (const std::size_t i : in) {
                 const std::vector<std::size_t> place = place_of(sweep.axes, i);
                 if (curves == nullptr || place[by] == c) {
@@ -122,9 +125,7 @@ findings::Picture family_chart(const Sweep& sweep, const std::vector<SweepValue>
     const SweepAxis& over = *axis_named(sweep.axes, sweep.over);
     const std::vector<std::size_t> axes = panel_axes(sweep);
     std::vector<SweepAxis> panels;
-    for (const std::size_t axis : axes) {
-        panels.push_back(sweep.axes[axis]);
-    }
+    std::ranges::transform(axes, std::back_inserter(panels), [&](std::size_t axis) { return sweep.axes[axis]; });
     constexpr std::size_t kMostColumns = 4;
     draw::ChartGrid grid{.title = sweep.title,
                          .caption = fixed_text(sweep),
@@ -166,9 +167,8 @@ std::vector<findings::Picture> sweep_charts(const Sweep& sweep, const std::vecto
         }
     }
     std::vector<findings::Picture> charts;
-    for (const std::vector<std::string>& family : families) {
-        charts.push_back(family_chart(sweep, values, family));
-    }
+    std::ranges::transform(families, std::back_inserter(charts),
+                           [&](const auto& family) { return family_chart(sweep, values, family); });
     return charts;
 }
 
