@@ -149,7 +149,7 @@ class VariantSteps {
         std::vector<findings::PlannedStep> steps;
         const double pixels = static_cast<double>(setup_.camera.sensor.width) * setup_.camera.sensor.height;
         for (const std::string& pass : scene_.passes) {
-            constexpr double kSecondsOfSample = 3e-6;  // of the passes' usual scenes
+            constexpr double kSecondsOfSample = 1e-6;  // of the passes' usual scenes
             steps.push_back(
                 {kPass, name_of(pass), pass_input(pass), 1.0 + kSecondsOfSample * pixels * samples_of(pass)});
         }
