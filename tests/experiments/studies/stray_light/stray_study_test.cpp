@@ -169,7 +169,7 @@ TEST_F(StrayStudy, FindsWhatTheVariantsChange) {
     EXPECT_EQ(found.subjects[0].pictures.size(), 5U);  // four sheets and the ghosts' chart
     EXPECT_TRUE(says(found.subjects[0].pictures.back().bytes, "Ghosts of two reflections"));
     EXPECT_EQ(found.subjects[1].pictures.size(), 4U);
-    EXPECT_EQ(found.tables.at(0).second["variants"].size(), 3U);
+    EXPECT_EQ(found.tables.at(0).second[0]["variants"].size(), 3U);
 }
 
 }  // namespace lensproof::studies::stray_study_test
