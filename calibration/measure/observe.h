@@ -38,8 +38,9 @@ struct Observations {
     SharpnessObservations sharpness;
 };
 
-/// Loads the pictures, as many at once as threads and memory allow, and looks for what each is to show. One that does not do is left out, with the reason
-/// in its account and, where it should show a chart, in its view; nothing is thrown for it.
+/// Loads the pictures, as many at once as threads and memory allow, and looks for what each is to show. One that does
+/// not do is left out, with the reason in its account and, where it should show a chart, in its view; nothing is thrown
+/// for it.
 Observations observe(const MeasureInput& input);
 
 /// That no picture does, and why each does not.
