@@ -1,7 +1,7 @@
 // tests/cli/paper_test.cpp — the figures of the paper of 2011: all of them are read, and a part of them is made.
 #include <gtest/gtest.h>
 
-#include "engine/base/file.h"
+#include "engine/base/data_root.h"
 #include "tests/cli/program.h"
 #include "tests/complaint.h"
 

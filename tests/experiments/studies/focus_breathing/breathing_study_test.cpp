@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/analysis/lens_analysis.h"
-#include "engine/base/file.h"
+#include "engine/base/data_root.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
