@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -310,28 +311,26 @@ bool looks_for_charts(const Observations& seen) {
 Observations observe(const MeasureInput& input) {
     Observations seen;
     seen.sharpness.focus_position_mm = input.focus_position_mm;
-    const int count = static_cast<int>(input.pictures.size());
-    const auto tell = [&](int finished) {
-        if (input.progress && finished < count) {
-            input.progress(static_cast<double>(finished) / count);
+    std::span<const Picture> rest = input.pictures;
+    const auto tell = [&](std::size_t finished) {
+        if (input.progress && finished < input.pictures.size()) {
+            input.progress(static_cast<double>(finished) / static_cast<double>(input.pictures.size()));
         }
     };
-    const auto& pictures = input.pictures;
-    int first = 0;
-    for (; first < count && seen.width == 0; ++first) {  // until one says how large they are
-        tell(first);
-        take(seen, look_at(pictures[static_cast<std::size_t>(first)], input), pictures[static_cast<std::size_t>(first)],
-             input);
+    for (; !rest.empty() && seen.width == 0; rest = rest.subspan(1)) {  // until one says how large they are
+        tell(seen.pictures.size());
+        take(seen, look_at(rest.front(), input), rest.front(), input);
     }
-    std::vector<Look> looks(static_cast<std::size_t>(count - first));
+    std::vector<Look> looks(rest.size());
     parallel_for(
-        count - first, at_once(seen, input.threads),
+        static_cast<int>(rest.size()), at_once(seen, input.threads),
         [&](int i) {
-            looks[static_cast<std::size_t>(i)] = look_at(pictures[static_cast<std::size_t>(first + i)], input);
+            const auto at = static_cast<std::size_t>(i);
+            looks[at] = look_at(rest[at], input);
         },
-        [&](int finished) { tell(first + finished); });
+        [&](int finished) { tell(seen.pictures.size() + static_cast<std::size_t>(finished)); });
     for (std::size_t i = 0; i < looks.size(); ++i) {
-        take(seen, std::move(looks[i]), pictures[static_cast<std::size_t>(first) + i], input);
+        take(seen, std::move(looks[i]), rest[i], input);
     }
     return seen;
 }

@@ -334,10 +334,10 @@ std::vector<float> blur_and_box(double blur_px) {
     const int reach = static_cast<int>(std::ceil(kBlurReach * sigma));
     const cv::Mat gaussian =
         blur_px > 0.0 ? cv::getGaussianKernel(2 * reach + 1, sigma, CV_64F) : cv::Mat::ones(1, 1, CV_64F);
-    std::vector<float> weights(static_cast<std::size_t>(gaussian.rows + kSubpixels - 1));
-    for (int i = 0; i < gaussian.rows; ++i) {
-        for (int j = 0; j < kSubpixels; ++j) {
-            weights[static_cast<std::size_t>(i + j)] += static_cast<float>(gaussian.at<double>(i) / kSubpixels);
+    std::vector<float> weights(gaussian.total() + kSubpixels - 1);
+    for (std::size_t i = 0; i < gaussian.total(); ++i) {
+        for (std::size_t j = 0; j < kSubpixels; ++j) {
+            weights[i + j] += static_cast<float>(gaussian.at<double>(static_cast<int>(i)) / kSubpixels);
         }
     }
     return weights;
@@ -358,8 +358,8 @@ cv::Mat pixels_of(const cv::Mat& fine, const std::vector<float>& weights, const 
                 line[i] += weights[static_cast<std::size_t>(k)] * row[i];
             }
         }
-        for (int x = 0; x < pixels.cols; ++x) {
-            const float* first = &line[static_cast<std::size_t>(before + x * kSubpixels)];
+        const float* first = line.data() + before;
+        for (int x = 0; x < pixels.cols; ++x, first += kSubpixels) {
             pixels.at<float>(y, x) = std::inner_product(weights.begin(), weights.end(), first, 0.0F);
         }
     }
