@@ -61,8 +61,18 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     lensproof::cli::occupy_standard_streams();
-    const lensproof::cli::Outcome outcome =
-        lensproof::cli::run_program(std::vector<std::string>(argv + std::min(argc, 1), argv + argc), std::cout);
+    std::vector<std::string> arguments;
+    const char* const* const first = argv + std::min(argc, 1);
+    lensproof::cli::Outcome outcome =
+        lensproof::cli::outcome_of([&arguments, first] {  // two words, which need no memory
+            for (const char* const* word = first; *word != nullptr; ++word) {
+                arguments.emplace_back(*word);
+            }
+            return 0;
+        });
+    if (outcome.message.empty()) {
+        outcome = lensproof::cli::run_program(arguments, std::cout);
+    }
     if (outcome.message.empty()) {
         return lensproof::cli::flushed(outcome.status);
     }
