@@ -236,13 +236,16 @@ class Decoder {
     std::vector<char> rows_of_tiles_;
 };
 
-// Threads would be the library's, and it is one file. Where it is loaded late (.ci/late_library.cmake), this does it.
-void prepare_library() {
-    OIIO::attribute("threads", 1);
-    OIIO::attribute("exr_threads", -1);
+// Where the library is loaded late (.ci/late_library.cmake), this does it, and nothing else: what a library starts in
+// the process that others are forked from, threads and locks, would not be whole in those.
+void load_library() {
+    OIIO::geterror();
 }
 
 void decode(const fs::path& file, MessageChannel& channel) {
+    // Threads would be the library's, and it is one file.
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
     const std::string asked = channel.receive();
     Taker hints(file, asked);
     const OpenPicture picture = open_picture_here(file, take_spec(hints));
@@ -327,7 +330,7 @@ class ConfinedInput final : public OIIO::ImageInput {
 }  // namespace
 
 OpenPicture open_confined(const fs::path& file, const OIIO::ImageSpec& hints) {
-    MessageChannel channel = start_confined(decode, file, file, prepare_library);
+    MessageChannel channel = start_confined(decode, file, file, load_library);
     std::string bytes;
     put_spec(bytes, hints);
     channel.send(bytes);
