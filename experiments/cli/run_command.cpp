@@ -20,9 +20,10 @@
 #include "experiments/cli/terminal.h"
 #include "experiments/draw/report/report.h"
 #include "experiments/runner/against.h"
+#include "experiments/runner/junit.h"
 #include "experiments/runner/kept_steps.h"
 #include "experiments/runner/report_content.h"
-#include "experiments/runner/run_index.h"
+#include "experiments/runner/report_index.h"
 
 namespace lensproof::cli {
 
@@ -88,13 +89,8 @@ void print_checks(const std::vector<findings::Check>& checks) {
             group = check.group;
             print("{}\n", group);
         }
-        const std::string bound =
-            check.expectation == findings::Expectation::within ? fmt::format("{:g} ± {:g}", check.target, check.limit)
-            : check.expectation == findings::Expectation::differs  ? fmt::format("> {:g}", check.limit)
-            : check.expectation == findings::Expectation::at_least ? fmt::format("≥ {:g}", check.limit)
-                                                                   : fmt::format("≤ {:g}", check.limit);
         print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", findings::verdict_name(check.verdict()), check.label,
-              check.value, check.sigma, check.unit, bound);
+              check.value, check.sigma, check.unit, findings::bound_text(check));
     }
 }
 

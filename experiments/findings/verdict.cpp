@@ -1,5 +1,7 @@
 #include "experiments/findings/verdict.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,6 +37,20 @@ Verdict Check::verdict() const {
 bool Check::is_below_floor() const {
     const double deviation = expectation == Expectation::within ? value - target : value;
     return floor && std::abs(deviation) <= *floor;
+}
+
+std::string bound_text(const Check& check) {
+    switch (check.expectation) {
+        case Expectation::within:
+            return fmt::format("{:g} ± {:g}", check.target, check.limit);
+        case Expectation::differs:
+            return fmt::format("> {:g}", check.limit);
+        case Expectation::at_least:
+            return fmt::format("≥ {:g}", check.limit);
+        case Expectation::at_most:
+            break;
+    }
+    return fmt::format("≤ {:g}", check.limit);
 }
 
 Verdict overall(const std::vector<Check>& checks) {

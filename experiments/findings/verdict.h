@@ -44,6 +44,9 @@ struct Check {
     [[nodiscard]] bool is_below_floor() const;
 };
 
+/// What the check's value has to be, in words: "≤ 0.5", "533.3 ± 2.1".
+std::string bound_text(const Check& check);
+
 /// FAIL where any check fails, else INCONCLUSIVE where any is, else PASS. Without checks: PASS.
 Verdict overall(const std::vector<Check>& checks);
 

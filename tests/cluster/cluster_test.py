@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -126,6 +127,24 @@ class Cluster(unittest.TestCase):
         self.assertEqual(cluster.sweep(commands, self.folder / "sweep", self.client,
                                        progress=lambda *told: done.append(told)), answers)
         self.assertEqual(len(done), 1, "nothing is done again")
+
+    def test_a_lens_that_changed_is_asked_again(self):
+        lens = self.folder / "lens.toml"
+        text = (SOURCE / "lenses/tessar.toml").read_text()
+        answers = []
+        thicker = re.sub(r"(thickness_mm\s*=\s*)([0-9.]+)", lambda gap: gap[1] + str(float(gap[2]) + 0.5), text, count=1)
+        for content in (text, thicker):
+            lens.write_text(content)
+            answers += cluster.sweep([["analyze", str(lens), "--fields", "0"]], self.folder / "changed", self.client)
+        self.assertNotEqual(answers[0]["paraxial"]["efl_mm"], answers[1]["paraxial"]["efl_mm"])
+
+    def test_experiments_are_run_again_to_what_they_say_now(self):
+        experiment = self.folder / "passage.toml"
+        for f_number in ("8.0", "16.0"):
+            experiment.write_text(f'title = "at {f_number}"\n[[pupil_passage]]\nlens = "tessar"\nf_number = {f_number}\n')
+            place, = cluster.experiments([experiment], self.folder / "reports", self.client)
+            self.assertEqual(json.loads((place / "report.json").read_text())["title"], f"at {f_number}")
+        self.assertEqual([file.name for file in (self.folder / "reports").iterdir()], ["passage"])
 
     def test_what_no_other_try_changes_ends_at_once(self):
         with self.assertRaises(cluster.TaskFailed) as failed:

@@ -49,6 +49,11 @@ class Package(unittest.TestCase):
         output(self.program, "render", scene, "--spp", 1, "-o", "view.exr", cwd=self.folder)  # engine/spectral/data
         output(self.program, "run", "--help", cwd=self.folder)
 
+    def test_starting_it_loads_no_library_for_pictures(self):
+        needed = output("readelf", "-d", self.program)
+        self.assertIn("libOpenImageIO_Util.so", needed)
+        self.assertNotIn("libOpenImageIO.so", needed)  # loaded late, with the 250 that it brings
+
     def test_it_knows_what_it_was_made_from(self):
         version = output(self.program, "--version")
         commit = subprocess.run(["git", "-c", "safe.directory=*", "-C", SOURCE, "rev-parse", "HEAD"],

@@ -25,6 +25,7 @@ import signal
 import subprocess
 import sys
 import time
+import uuid
 from collections.abc import Callable, Iterable, Sequence
 
 UNUSABLE_INPUT = 2  # an exit status: another try comes to the same
@@ -158,6 +159,10 @@ def run(goals: Sequence[Task], client, attempts: int = 10, progress: Progress = 
                     start(later)
 
 
+def _digest(*what) -> str:
+    return hashlib.sha256(json.dumps(what).encode()).hexdigest()[:16]
+
+
 def render_task(scene: os.PathLike | str, folder: os.PathLike | str, shards: int,
                 options: Sequence[str] = ()) -> Task:
     """A scene's picture, `whole.exr` in the folder, as a task that comes after those of its shards.
@@ -197,8 +202,8 @@ def render(scene: os.PathLike | str, output: os.PathLike | str, client, shards: 
     on from there.
     """
     output = pathlib.Path(output).resolve()
-    identity = json.dumps([pathlib.Path(scene).read_text(), shards, list(options)])
-    folder = output.with_name(f"{output.stem}.parts-{hashlib.sha256(identity.encode()).hexdigest()[:12]}")
+    identity = _digest(pathlib.Path(scene).read_text(), shards, list(options))
+    folder = output.with_name(f"{output.stem}.parts-{identity}")
     whole = render_task(scene, folder, shards, options)
     run([whole], client, attempts, progress)
     for suffix in (".png", ".exr"):
@@ -211,12 +216,15 @@ def sweep(commands: Sequence[Sequence[str]], folder: os.PathLike | str, client, 
           progress: Progress = show_progress) -> list[dict]:
     """What each of the commands, as ["analyze", "tessar", "--f-number", "8"], says as JSON, in their order.
 
-    The answers stay in the folder, named by their commands: who calls again has what is there at once.
+    The answers stay in the folder, named by the program's version, the commands, and the bytes of the files that they
+    name (not of those that these refer to): who calls again has what is there at once.
     """
     folder = pathlib.Path(folder).resolve()
+    version = subprocess.run([program(), "--version"], capture_output=True, text=True, check=True).stdout
     tasks = []
     for command in commands:
-        name = hashlib.sha256(json.dumps(list(command)).encode()).hexdigest()[:16]
+        files = [pathlib.Path(word) for word in command]
+        name = _digest(version, list(command), [file.read_bytes().hex() for file in files if file.is_file()])
         result = folder / f"{command[0]}-{name}.json"
         tasks.append(Task((*command, "--json", str(result), "--quiet"), result))
     run(tasks, client, attempts, progress)
@@ -231,11 +239,19 @@ def experiments(files: Sequence[os.PathLike | str], folder: os.PathLike | str, c
     """
     folder = pathlib.Path(folder).resolve()
     tasks = []
+    places = []
     for file in (pathlib.Path(name).resolve() for name in files):
+        # An earlier report may be of another file or program; what is the same in it, its steps know.
         place = folder / file.stem
-        tasks.append(Task(("run", str(file), "-o", str(place), "--quiet"), place / "report.html"))
-    run(tasks, client, attempts, progress)
-    return [task.result.parent for task in tasks]
+        done = folder / f".{file.stem}-{uuid.uuid4().hex}.json"
+        tasks.append(Task(("run", str(file), "-o", str(place), "--json", str(done), "--quiet"), done))
+        places.append(place)
+    try:
+        run(tasks, client, attempts, progress)
+    finally:
+        for task in tasks:
+            task.result.unlink(missing_ok=True)
+    return places
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
