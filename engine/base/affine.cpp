@@ -3,17 +3,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "engine/base/angle.h"
 
 namespace lensproof {
-
-namespace {
-
-double radians(double degrees) {
-    return degrees * std::numbers::pi / 180.0;
-}
-
-}  // namespace
 
 Matrix3 product(const Matrix3& a, const Matrix3& b) {
     Matrix3 result;

@@ -9,7 +9,7 @@ namespace lensproof::scene {
 
 namespace {
 
-constexpr Bounds kLength{.min = 0.0, .max = 1e12, .min_excluded = true};
+constexpr Bounds kSize{.min = 0.0, .max = 1e12, .min_excluded = true};
 constexpr Bounds kAngle{.min = -3600.0, .max = 3600.0};
 constexpr Bounds kCoordinate{.min = -1e12, .max = 1e12};
 constexpr Bounds kFactor{.min = -1e9, .max = 1e9};
@@ -60,7 +60,7 @@ MeshFromFile read_mesh_shape(TomlTable& table) {
         table.fail("cd_m2_per_unit",
                    "is for a glTF file's own materials, expected a .gltf or .glb file and no material");
     }
-    mesh.options.mm_per_unit = table.optional_number("mm_per_unit", kLength);
+    mesh.options.mm_per_unit = table.optional_number("mm_per_unit", kSize);
     mesh.options.part = table.text_or("part", "");
     if (table.has("normals")) {
         const std::string normals = table.choice("normals", {"file", "flat", "smooth"});
@@ -78,7 +78,7 @@ ChartOnQuad read_chart_shape(TomlTable& table) {
     TomlTable inner = table.table("chart");
     ChartOnQuad on{.chart = read_chart(inner)};
     if (table.has("size_mm")) {
-        const std::vector<double> size = table.numbers("size_mm", 2, kLength);
+        const std::vector<double> size = table.numbers("size_mm", 2, kSize);
         on.quad = {size[0], size[1]};
         return on;
     }
@@ -118,10 +118,10 @@ ShapeDescription read_shape(TomlTable& table) {
         return read_mesh_shape(table);
     }
     if (shape == "sphere") {
-        return Sphere{table.number("radius_mm", kLength)};
+        return Sphere{table.number("radius_mm", kSize)};
     }
     if (shape == "quad") {
-        const std::vector<double> size = table.numbers("size_mm", 2, kLength);
+        const std::vector<double> size = table.numbers("size_mm", 2, kSize);
         return Quad{size[0], size[1]};
     }
     if (shape == "polygon") {

@@ -15,7 +15,7 @@ constexpr double kGridEdge = 12.0;
 constexpr double kPanelGap = 10.0;
 constexpr double kGridTitleSize = 16.0;
 constexpr double kGridTextSize = 11.5;
-constexpr double kGridLine = 17.0;
+constexpr double kLineHeight = 17.0;
 constexpr double kRowLabelSize = 12.5;
 
 struct GridPanel {
@@ -83,7 +83,7 @@ double draw_grid_heading(Svg& svg, const ChartGrid& grid, double top, double wid
         for (const std::string& line : wrapped(grid.caption, letters(kGridTextSize), 4)) {
             svg.text({kGridEdge, top + kGridTextSize}, line,
                      {.size = kGridTextSize, .fill = kQuiet, .class_name = "caption"});
-            top += kGridLine;
+            top += kLineHeight;
         }
     }
     const std::vector<LegendEntry> entries = legend_entries(grid.panels);

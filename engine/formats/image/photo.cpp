@@ -40,7 +40,7 @@ std::optional<double> positive(const OIIO::ImageSpec& spec, const char* name) {
     return value > 0.0F && std::isfinite(value) ? std::optional(std::stod(fmt::format("{:.7g}", value))) : std::nullopt;
 }
 
-std::string trimmed(std::string text) {
+std::string without_padding(std::string text) {
     while (!text.empty() && (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back())) != 0)) {
         text.pop_back();
     }
@@ -92,10 +92,10 @@ StatedCurve curve_of(const OIIO::ImageSpec& spec, bool raw, const std::optional<
 }
 
 CameraNotes notes_of(const OIIO::ImageSpec& spec, bool raw, const std::optional<TransferCurve>& assumed) {
-    CameraNotes notes{.make = trimmed(spec.get_string_attribute("Make")),
-                      .model = trimmed(spec.get_string_attribute("Model")),
-                      .lens = trimmed(spec.get_string_attribute("Exif:LensModel")),
-                      .software = trimmed(spec.get_string_attribute("Software")),
+    CameraNotes notes{.make = without_padding(spec.get_string_attribute("Make")),
+                      .model = without_padding(spec.get_string_attribute("Model")),
+                      .lens = without_padding(spec.get_string_attribute("Exif:LensModel")),
+                      .software = without_padding(spec.get_string_attribute("Software")),
                       .focal_length_mm = positive(spec, "Exif:FocalLength"),
                       .equivalent_focal_length_mm = positive(spec, "Exif:FocalLengthIn35mmFilm"),
                       .f_number = positive(spec, "FNumber"),

@@ -14,15 +14,15 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr std::array kNames = {"srgb", "rec709", "linear"};  // in TransferKind's order; "gamma:2.2" is its last
+constexpr std::array kCurveNames = {"srgb", "rec709", "linear"};  // in TransferKind's order; "gamma:2.2" is its last
 constexpr std::string_view kGamma = "gamma:";
 
 }  // namespace
 
 std::optional<TransferCurve> parse_transfer_curve(const std::string& text) {
-    const auto* const named = std::ranges::find(kNames, text);
-    if (named != kNames.end()) {
-        return TransferCurve{.kind = static_cast<TransferKind>(named - kNames.begin())};
+    const auto* const named = std::ranges::find(kCurveNames, text);
+    if (named != kCurveNames.end()) {
+        return TransferCurve{.kind = static_cast<TransferKind>(named - kCurveNames.begin())};
     }
     const bool is_gamma = text.starts_with(kGamma);
     const double gamma = is_gamma ? parse_exact<double>(text.substr(kGamma.size())).value_or(0.0) : 0.0;
@@ -32,7 +32,7 @@ std::optional<TransferCurve> parse_transfer_curve(const std::string& text) {
 
 std::string to_text(const TransferCurve& curve) {
     return curve.kind == TransferKind::gamma ? fmt::format("{}{:g}", kGamma, curve.gamma)
-                                             : kNames[static_cast<std::size_t>(curve.kind)];
+                                             : kCurveNames[static_cast<std::size_t>(curve.kind)];
 }
 
 float to_linear(const TransferCurve& curve, float value) {
