@@ -7,6 +7,7 @@
 - engine/README.md's table of the rooms says what engine/CMakeLists.txt does.
 - One door to the terminal: texts for people go through experiments/cli/terminal.h, which shows what would steer it.
 - Tests mirror the sources: a folder below tests/engine, tests/calibration and tests/experiments is a folder there.
+- A namespace a file of tests, named as the file: they are compiled several to a text, some with another room's.
 - No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
   namespace are linked into one program, which is undefined behaviour that no linker tells. universal-ctags finds the
   definitions; without it this part is skipped, exit status 77.
@@ -97,6 +98,12 @@ def unmirrored(home):
             if not (home / folder).is_dir()]
 
 
+def crowded(home):
+    return [f"{file.relative_to(home)} opens no namespace lensproof::…::{file.stem}"
+            for file in sorted((home / "tests").rglob("*_test.cpp"))
+            if not re.search(rf"^namespace lensproof\S*::{file.stem} {{", file.read_text(), re.MULTILINE)]
+
+
 def defined_twice(home):
     found = subprocess.run(
         ["ctags", "--languages=C++", "--langmap=C++:.h.cpp", "--kinds-C++=csugtf", "--fields=+KSZ",
@@ -137,8 +144,9 @@ def main():
     planted(mistold, {"engine/CMakeLists.txt": "lensproof_room(engine/optics USES engine/base\n  engine/scene LINKS x)\n",
                       "engine/README.md": "| `optics` | lenses | `base` |\n"}, "optics uses ['base']")
     planted(unmirrored, {"engine/optics/lens.h": "", "tests/engine/io/lens_test.cpp": ""}, "tests/engine/io")
+    planted(crowded, {"tests/cli/run_test.cpp": "namespace lensproof {\n"}, "lensproof::…::run_test")
     planted(past_the_door, {"experiments/cli/a_command.cpp": 'fmt::print("{}\\n", name);'}, "fmt::print")
-    faults = circles(home) + misplaced(home) + mistold(home) + past_the_door(home) + unmirrored(home)
+    faults = circles(home) + misplaced(home) + mistold(home) + past_the_door(home) + unmirrored(home) + crowded(home)
     has_ctags = shutil.which("ctags") and "Universal" in subprocess.run(
         ["ctags", "--version"], capture_output=True, text=True).stdout
     if has_ctags:

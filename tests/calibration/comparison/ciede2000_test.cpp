@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::ciede2000_test {
 namespace {
 
 struct Pair {
@@ -85,4 +85,4 @@ TEST(Ciede2000, OfAPictureIsThatOfItsPixels) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::ciede2000_test

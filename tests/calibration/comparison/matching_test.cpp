@@ -12,7 +12,7 @@
 #include "calibration/comparison/radial_difference.h"
 #include "tests/calibration/comparison/pictures.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::matching_test {
 namespace {
 
 using comparison_test::discs;
@@ -135,4 +135,4 @@ TEST(ComparePictures, BringsOneToTheOther) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::matching_test

@@ -10,7 +10,7 @@
 #include "calibration/comparison/structural_similarity.h"
 #include "tests/calibration/comparison/pictures.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::metrics_test {
 namespace {
 
 using comparison_test::high_range_picture;
@@ -105,4 +105,4 @@ TEST(Overlap, ShrinksFromTheFramesEdgeAndFromWhatIsNotInCommon) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::metrics_test

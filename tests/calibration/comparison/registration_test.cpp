@@ -11,7 +11,7 @@
 #include "engine/base/angle.h"
 #include "tests/calibration/comparison/pictures.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::registration_test {
 namespace {
 
 using comparison_test::discs;
@@ -167,4 +167,4 @@ TEST(WarpedPicture, IsWhatTheOtherShows) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::registration_test

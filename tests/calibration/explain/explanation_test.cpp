@@ -11,7 +11,12 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/explain/simulated_profile.h"
 
-namespace lensproof::calibration::explain_test {
+namespace lensproof::calibration::explanation_test {
+
+using explain_test::Faults;
+using explain_test::image_points;
+using explain_test::simulated_profile;
+using explain_test::Studio;
 
 LensExplanation explained(const Studio& studio, const Profile& profile, const std::string& lens) {
     return explain(formats::load_lens(lens), {{"profile.json", profile}},
@@ -196,4 +201,4 @@ TEST(Explanation, SeveralProfilesHaveOneLens) {
               parameter(alone, "decentre_y_5_6_mm").standard_error);
 }
 
-}  // namespace lensproof::calibration::explain_test
+}  // namespace lensproof::calibration::explanation_test

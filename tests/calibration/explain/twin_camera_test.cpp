@@ -6,7 +6,7 @@
 
 #include "tests/calibration/explain/simulated_profile.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::twin_camera_test {
 namespace {
 
 using explain_test::Faults;
@@ -72,4 +72,4 @@ TEST(TwinCamera, LeavesALensThatIsAsPrescribedAlone) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::twin_camera_test

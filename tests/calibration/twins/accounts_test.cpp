@@ -8,7 +8,7 @@
 #include "calibration/twins/point_account.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::accounts_test {
 namespace {
 
 constexpr int kWidth = 600;
@@ -213,4 +213,4 @@ TEST(PixelAccount, TheTwinIsShownInThePhotosExposure) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::accounts_test

@@ -15,7 +15,7 @@
 #include "tests/complaint.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::polynomial {
+namespace lensproof::polynomial::polynomial_lens_test {
 namespace {
 
 const std::vector<double> kWavelengths{400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0};
@@ -239,4 +239,4 @@ TEST(PolynomialLens, RefusesLensesThatAreNotRound) {
 }
 
 }  // namespace
-}  // namespace lensproof::polynomial
+}  // namespace lensproof::polynomial::polynomial_lens_test

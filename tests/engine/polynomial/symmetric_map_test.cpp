@@ -8,7 +8,7 @@
 #include "engine/polynomial/exit_chart.h"
 #include "engine/polynomial/sparse_fit.h"
 
-namespace lensproof::polynomial {
+namespace lensproof::polynomial::symmetric_map_test {
 namespace {
 
 SymmetricMap some_map() {
@@ -147,4 +147,4 @@ TEST(SparseFit, FindsTheTermsThatAreThere) {
 }
 
 }  // namespace
-}  // namespace lensproof::polynomial
+}  // namespace lensproof::polynomial::symmetric_map_test

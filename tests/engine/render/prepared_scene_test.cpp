@@ -10,7 +10,7 @@
 #include "tests/complaint.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::render {
+namespace lensproof::render::prepared_scene_test {
 namespace {
 
 /// A sun beside the picture and nothing else: all that reaches the film has gone astray. `camera`: lines of its table.
@@ -107,4 +107,4 @@ TEST(PreparedScene, WhatIsDiffractedIsMissingInAnyModelsImage) {
 }
 
 }  // namespace
-}  // namespace lensproof::render
+}  // namespace lensproof::render::prepared_scene_test

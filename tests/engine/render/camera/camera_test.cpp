@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace lensproof::render {
+namespace lensproof::render::camera_test {
 namespace {
 
 CameraSettings tessar_camera() {
@@ -63,4 +63,4 @@ TEST(Camera, TakesALensInThePlaceOfTheOneNamed) {
 }
 
 }  // namespace
-}  // namespace lensproof::render
+}  // namespace lensproof::render::camera_test

@@ -7,7 +7,7 @@
 #include "engine/optics/focus.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::render {
+namespace lensproof::render::lens_profile_test {
 namespace {
 
 const std::vector<double> kThreeLines_nm = {450.0, 550.0, 650.0};
@@ -38,4 +38,4 @@ TEST(LensProfile, IsReadWholeOrNotAtAll) {
 }
 
 }  // namespace
-}  // namespace lensproof::render
+}  // namespace lensproof::render::lens_profile_test

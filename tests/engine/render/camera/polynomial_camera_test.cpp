@@ -8,7 +8,7 @@
 #include "engine/base/input_error.h"
 #include "engine/render/camera/camera.h"
 
-namespace lensproof::render {
+namespace lensproof::render::polynomial_camera_test {
 namespace {
 
 CameraSettings settings_of(const std::string& lens, double f_number, double pitch_mm, LensModel model) {
@@ -124,4 +124,4 @@ TEST(PolynomialCamera, HashIsItsOwn) {
 }
 
 }  // namespace
-}  // namespace lensproof::render
+}  // namespace lensproof::render::polynomial_camera_test

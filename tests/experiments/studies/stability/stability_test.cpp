@@ -16,6 +16,9 @@ static void PrintTo(const Extreme& extreme, std::ostream* out) {
     *out << extreme.id;
 }
 
+}  // namespace lensproof::studies
+
+namespace lensproof::studies::stability_test {
 namespace {
 
 /// A few values of the sweep, its ends among them, with a few rays each: what a hundred digits do in a fraction of a
@@ -151,4 +154,4 @@ TEST(StabilityReport, RepeatsItselfFromItsSeed) {
 }
 
 }  // namespace
-}  // namespace lensproof::studies
+}  // namespace lensproof::studies::stability_test

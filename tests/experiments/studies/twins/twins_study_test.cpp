@@ -16,7 +16,7 @@
 #include "tests/complaint.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::studies {
+namespace lensproof::studies::twins_study_test {
 namespace {
 
 constexpr int kPhotos = 5;
@@ -153,4 +153,4 @@ TEST_F(TwinsStudy, NamesWhatItCannotUse) {
 }
 
 }  // namespace
-}  // namespace lensproof::studies
+}  // namespace lensproof::studies::twins_study_test
