@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The table of attacks: what was done to the program, how often, and how often it failed.
 
-    attacks.py PROGRAM FUZZ_FOLDER FAILING_CALLS [--scale S] [--only WORD]
+    attacks.py PROGRAM FUZZ_REPLAY FAILING_CALLS [--scale S] [--only WORD]
 
-PROGRAM is `lensproof`, FUZZ_FOLDER holds the readers of tests/fuzz, FAILING_CALLS is the library of
+PROGRAM is `lensproof`, FUZZ_REPLAY runs the readers of tests/fuzz, FAILING_CALLS is the library of
 tests/failing_calls.cpp. The same scale gives the same attacks, but for the moments of the kills. Exit status 1 where one was a success.
 """
 import argparse
@@ -100,7 +100,7 @@ def damaged(content, chance):
 
 
 def mutants_of(reader, count, fuzz):
-    done = subprocess.run([fuzz / f"fuzz_{reader}", CORPUS / reader, str(count)], capture_output=True, check=False)
+    done = subprocess.run([fuzz, reader, CORPUS / reader, str(count)], capture_output=True, check=False)
     said = done.stdout.decode(errors="replace").strip().splitlines() or ["nothing said"]
     return count, 0 if done.returncode == 0 else max(1, len(said) - 1), "" if done.returncode == 0 else said[0]
 

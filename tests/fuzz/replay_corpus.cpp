@@ -1,5 +1,5 @@
-// Runs a fuzz target on every file of a folder, as libFuzzer does with a corpus, and on mutants of those files: for
-// builds without libFuzzer.
+// Runs a reader on every file of a folder, as libFuzzer does with a corpus, or on mutants of those files: for builds
+// without libFuzzer.
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -18,15 +18,12 @@
 #include <vector>
 
 #include "engine/base/file.h"
+#include "tests/fuzz/replayed_readers.h"
 #include "tests/test_folder.h"
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
 
-void use(const std::string& bytes) {
-    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-}
+using Reader = void (*)(const std::string& bytes);
 
 class Mutator {
     unsigned below(std::size_t end) { return static_cast<unsigned>(random_() % std::max<std::size_t>(1, end)); }
@@ -104,7 +101,8 @@ unsigned& shared_number() {
 
 /// In processes of their own, each of which goes on until one of the mutants ends it: by a signal, by taking ten
 /// seconds, or by 4 GiB. Those are left in the working folder. Returns how many they are.
-int use_mutants(const std::string& name, const std::vector<std::string>& corpus, unsigned first, unsigned count) {
+int use_mutants(const std::string& name, Reader use, const std::vector<std::string>& corpus, unsigned first,
+                unsigned count) {
     const lensproof::TestFolder temporary;  // for readers of files, which processes that are ended leave behind
     ::setenv("TMPDIR", temporary.path().c_str(), 1);
     unsigned& current = shared_number();
@@ -143,24 +141,27 @@ int use_mutants(const std::string& name, const std::vector<std::string>& corpus,
 }
 
 int replay(int argc, char** argv) {
-    if (argc < 2 || argc > 4) {
-        std::fprintf(stderr, "usage: %s FOLDER [MUTANTS [FIRST]]\n", argv[0]);
+    const auto& readers = lensproof::replayed_readers();
+    const auto reader = argc > 1 ? readers.find(argv[1]) : readers.end();
+    if (argc < 3 || argc > 5 || reader == readers.end()) {
+        std::fprintf(stderr, "usage: %s READER FOLDER [MUTANTS [FIRST]]\n", argv[0]);
         return 2;
     }
+    const Reader use = reader->second;
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
+    for (const auto& entry : std::filesystem::directory_iterator(argv[2])) {
         files.push_back(entry.path());
     }
     std::ranges::sort(files);
     std::vector<std::string> corpus(files.size());
     std::ranges::transform(files, corpus.begin(), lensproof::read_file);
     int failures = 0;
-    if (argc > 2) {
+    if (argc > 3) {
         const auto number = [&](int i) {
             return static_cast<unsigned>(argc > i ? std::strtoul(argv[i], nullptr, 10) : 0);
         };
-        failures = use_mutants(std::filesystem::path(argv[0]).filename().string(), corpus, number(3), number(2));
-        std::printf("%u mutants, %d failures\n", number(2), failures);
+        failures = use_mutants(reader->first, use, corpus, number(4), number(3));
+        std::printf("%u mutants, %d failures\n", number(3), failures);
     } else {
         for (std::size_t i = 0; i < files.size(); ++i) {
             std::printf("%s\n", files[i].filename().c_str());
