@@ -5,6 +5,9 @@
 #   lensproof_room(FOLDER [USES FOLDER…] [LINKS LIBRARY…] [EXPOSES LIBRARY…])
 #
 # makes the library FOLDER with '/' as '_' of the folder's sources. EXPOSES: libraries whose headers its own include.
+#
+# Under the sanitizers, where clang-tidy judges every text too, all rooms of engine are one library: its texts hold sources
+# of several rooms, and what they all include is read once for each text.
 
 if(CMAKE_SCRIPT_MODE_FILE)  # cmake -DROOM=… -DUSES=… -DFILES=… -DSTAMP=… -P rooms.cmake: the check, within a build
     cmake_minimum_required(VERSION 3.25)
@@ -24,6 +27,13 @@ endif()
 
 set(ROOMS_SCRIPT "${CMAKE_CURRENT_LIST_FILE}")
 
+# Loops over packets for these processors' wide vectors, one of which is chosen at run time. Not under the sanitizers,
+# which these loops are built without: there they would be compiled to no end.
+set(LENSPROOF_AVX OFF)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$" AND NOT LENSPROOF_SANITIZE)
+    set(LENSPROOF_AVX ON)
+endif()
+
 function(lensproof_room folder)
     cmake_parse_arguments(ARG "" "" "USES;LINKS;EXPOSES" ${ARGN})
     string(REPLACE "/" "_" room ${folder})
@@ -41,23 +51,34 @@ function(lensproof_room folder)
         VERBATIM)
     add_custom_target(${room}_includes DEPENDS "${stamp}")  # by itself: no file of a room waits for another room's library
     list(FILTER sources INCLUDE REGEX "\\.cpp$")
-    if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+    if(NOT LENSPROOF_AVX)
         list(FILTER sources EXCLUDE REGEX "_avx[0-9]+\\.cpp$")
     endif()
-    add_library(${room} STATIC ${sources})
-    # Also for the Python module, which is a shared object; the program is as fast as without.
-    set_target_properties(${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_compile_options(${room} PRIVATE -fno-semantic-interposition)
-    add_dependencies(${room} ${room}_includes)
     string(REPLACE "/" "_" uses "${ARG_USES}")
     foreach(used IN LISTS uses)
         if(NOT TARGET ${used})
             message(FATAL_ERROR "${folder} uses ${used}, which is no room before it")
         endif()
     endforeach()
-    target_link_libraries(${room} PUBLIC lensproof_options ${uses} ${ARG_EXPOSES} PRIVATE ${ARG_LINKS})
-    if(room MATCHES "^engine_(.+)")  # other programs find it as lensproof::optics and the like (install.cmake)
-        set_target_properties(${room} PROPERTIES EXPORT_NAME ${CMAKE_MATCH_1})
-        set_property(GLOBAL APPEND PROPERTY LENSPROOF_ENGINE ${room})
+    set(library ${room})
+    if(LENSPROOF_SANITIZE AND folder MATCHES "^engine/")
+        set(library engine_rooms)
+        list(FILTER uses EXCLUDE REGEX "^engine_")
+        add_library(${room} INTERFACE)
+        target_link_libraries(${room} INTERFACE engine_rooms)
+    endif()
+    if(NOT TARGET ${library})
+        add_library(${library} STATIC)
+    endif()
+    if(NOT LENSPROOF_SANITIZE)  # the Python module is a shared object; the program is as fast as without
+        set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+        target_compile_options(${library} PRIVATE -fno-semantic-interposition)
+    endif()
+    target_sources(${library} PRIVATE ${sources})
+    add_dependencies(${library} ${room}_includes)
+    target_link_libraries(${library} PUBLIC lensproof_options ${uses} ${ARG_EXPOSES} PRIVATE ${ARG_LINKS})
+    if(library MATCHES "^engine_(.+)" AND NOT LENSPROOF_SANITIZE)  # other programs find it as lensproof::optics (install.cmake)
+        set_target_properties(${library} PROPERTIES EXPORT_NAME ${CMAKE_MATCH_1})
+        set_property(GLOBAL APPEND PROPERTY LENSPROOF_ENGINE ${library})
     endif()
 endfunction()
