@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "calibration/comparison/spline_surface.h"
 #include "calibration/comparison/warp_fit.h"
 #include "calibration/comparison/warp_pyramid.h"
+#include "calibration/statistics/dense_solvers.h"
 #include "engine/base/parallel.h"
 
 namespace lensproof::calibration {
@@ -86,10 +87,9 @@ TermFit fit_terms(const std::vector<TileShift>& tiles, const Warp& warp, const F
         const Vec2d to = warp(u + tile.shift_px / frame.half_diagonal_px);
         const auto basis = displacements(u);
         // The information's root, so that χ² is a sum of squares.
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(tile.information);
-        const Eigen::Matrix2d root = frame.half_diagonal_px *
-                                     axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-                                     axes.eigenvectors().transpose();
+        const SymmetricEigen axes = symmetric_eigen(tile.information);
+        const Eigen::Matrix2d root =
+            frame.half_diagonal_px * axes.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * axes.vectors.transpose();
         const auto row = static_cast<Eigen::Index>(2 * i);
         whole.segment<2>(row) = root * Eigen::Vector2d(to.x - u.x, to.y - u.y);
         for (int k = 0; k < terms; ++k) {
@@ -99,7 +99,7 @@ TermFit fit_terms(const std::vector<TileShift>& tiles, const Warp& warp, const F
     }
     TermFit fit{.chi_squared = whole.squaredNorm()};
     if (terms > 0) {
-        const Eigen::VectorXd found = moves.colPivHouseholderQr().solve(whole);
+        const Eigen::VectorXd found = least_norm_solution(moves, whole);
         std::copy(found.begin(), found.end(), fit.terms.begin());
         fit.chi_squared = (whole - moves * found).squaredNorm();
     }

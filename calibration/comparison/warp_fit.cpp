@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "calibration/statistics/dense_solvers.h"
 #include "engine/base/parallel.h"
 
 namespace lensproof::calibration {
@@ -76,7 +77,7 @@ bool tells_all(const Eigen::MatrixXd& normal) {
     }
     const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues()(0) > kNothing;
+    return symmetric_eigen(scaled).values(0) > kNothing;
 }
 
 }  // namespace
@@ -120,8 +121,7 @@ WarpStep warp_step(const std::vector<WarpTile>& tiles, WarpModel model) {
     if (!tells_all(normal)) {
         return step;
     }
-    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
-    const Eigen::VectorXd found = solver.solve(right);
+    const Eigen::VectorXd found = solve_symmetric(normal, right);
     step.contrast = found(terms);
     step.is_determined = step.contrast > 0.0;
     for (int k = 0; k < terms; ++k) {
@@ -139,7 +139,7 @@ WarpStep warp_step(const std::vector<WarpTile>& tiles, WarpModel model) {
         scatter =
             std::max(0.0, squares - found.dot(right)) / std::max(1.0, pixels - static_cast<double>(size)) * normal;
     }
-    const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(size, size));
+    const Eigen::MatrixXd inverse = solve_symmetric(normal, Eigen::MatrixXd::Identity(size, size));
     step.covariance = (inverse * scatter * inverse).topLeftCorner(terms, terms) / (step.contrast * step.contrast);
     return step;
 }
@@ -160,18 +160,18 @@ std::vector<TileShift> tile_shifts(const std::vector<WarpTile>& tiles, double co
         const Eigen::Matrix2d known = of_shift - taken * cross.transpose();
         const Eigen::Vector2d right = tile.products(shifts, kValue) - taken * tile.products(light, kValue);
         // Along an edge nothing is known: the step stays 0 there.
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(known);
+        const SymmetricEigen axes = symmetric_eigen(known);
         Eigen::Vector2d step = Eigen::Vector2d::Zero();
         for (int i = 0; i < 2; ++i) {
-            if (axes.eigenvalues()(i) > 1e-6 * of_shift.trace()) {
-                const Eigen::Vector2d axis = axes.eigenvectors().col(i);
-                step += axis * (axis.dot(right) / axes.eigenvalues()(i));
+            if (axes.values(i) > 1e-6 * of_shift.trace()) {
+                const Eigen::Vector2d axis = axes.vectors.col(i);
+                step += axis * (axis.dot(right) / axes.values(i));
             }
         }
         const Eigen::Vector4d right_all = tile.products(all, kValue);
         const Eigen::Matrix4d normal_all = tile.products(all, all);
-        const double squares = tile.products(kValue, kValue) -
-                               right_all.dot(normal_all.completeOrthogonalDecomposition().solve(right_all));
+        const Eigen::Vector4d fit_all = least_norm_solution(normal_all, right_all);
+        const double squares = tile.products(kValue, kValue) - right_all.dot(fit_all);
         const double variance = std::max(squares / std::max(1.0, tile.pixels - 4.0),
                                          kNothing * tile.products(kValue, kValue) / tile.pixels);
         const double size = frame.half_diagonal_px;

@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "calibration/statistics/dense_solvers.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -274,7 +276,7 @@ Vec2d standard_errors(const std::vector<Pixel>& pixels, const LineWidths& widths
                          cv::BORDER_CONSTANT);
         blurred.col(k) = Eigen::Map<const Eigen::VectorXd>(slope.ptr<double>(), size.area());
     }
-    const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(free_count, free_count));
+    const Eigen::MatrixXd inverse = solve_symmetric(normal, Eigen::MatrixXd::Identity(free_count, free_count));
     const Eigen::MatrixXd meat = blurred.transpose() * blurred;
     const Eigen::MatrixXd covariance = inverse * meat * inverse;
     return {std::sqrt(std::max(covariance(kX, kX), 0.0)), std::sqrt(std::max(covariance(kY, kY), 0.0))};

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "calibration/statistics/dense_solvers.h"
 #include "engine/base/infinity.h"
 
 namespace lensproof::calibration {
@@ -71,7 +72,7 @@ double linear_evidence(const LensFit& fit, const Belief& belief) {
     const Eigen::VectorXd gradient = -usual.cwiseProduct(at - fit.belief.mean);  // of the data, where both balance
     Eigen::MatrixXd normal = fit.information;
     normal += precision.asDiagonal();
-    const Eigen::VectorXd move = normal.ldlt().solve(-gradient - precision.cwiseProduct(at - belief.mean));
+    const Eigen::VectorXd move = solve_symmetric(normal, -gradient - precision.cwiseProduct(at - belief.mean));
     const double chi2 = fit.chi2 + 2.0 * gradient.dot(move) + move.dot(fit.information * move);
     const double strain2 = precision.dot((at + move - belief.mean).cwiseAbs2());
     return -0.5 * (chi2 + strain2) + log_occam_factor(fit.information, belief.sigma);

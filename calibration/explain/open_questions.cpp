@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/statistics/dense_solvers.h"
 #include "engine/base/angle.h"
 
 namespace lensproof::calibration {
@@ -60,15 +61,15 @@ std::vector<OpenDirection> open_directions(const std::vector<LensChange>& change
             touched.push_back(i);
         }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(Eigen::MatrixXd(relative(touched, touched)));
+    const SymmetricEigen axes = symmetric_eigen(relative(touched, touched));
     for (Eigen::Index k = static_cast<Eigen::Index>(touched.size()) - 1; k >= 0; --k) {
-        const double error = std::sqrt(std::max(0.0, axes.eigenvalues()[k]));
+        const double error = std::sqrt(std::max(0.0, axes.values[k]));
         if (error < kOpen) {
             break;
         }
         Eigen::VectorXd direction = Eigen::VectorXd::Zero(relative.rows());
         for (std::size_t i = 0; i < touched.size(); ++i) {
-            direction[touched[i]] = axes.eigenvectors()(static_cast<Eigen::Index>(i), k);
+            direction[touched[i]] = axes.vectors(static_cast<Eigen::Index>(i), k);
         }
         found.push_back({std::move(direction), error});
     }

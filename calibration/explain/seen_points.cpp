@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/statistics/dense_solvers.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
@@ -103,7 +104,7 @@ void add_shift(const Profile& profile, int index, int channel, double distance_m
     for (std::size_t i = 0; i < designs.size(); ++i) {
         design.middleRows<2>(2 * static_cast<Eigen::Index>(i)) = designs[i];
     }
-    shift.terms_of_shifts = design.completeOrthogonalDecomposition().pseudoInverse();
+    shift.terms_of_shifts = least_norm_solution(design, Eigen::MatrixXd::Identity(design.rows(), design.rows()));
     shift.terms = Eigen::Map<const Eigen::VectorXd>(found->second.values.data(), kShiftTermCount);
     const Eigen::Map<const Eigen::Matrix<double, kShiftTermCount, kShiftTermCount>> stated(
         found->second.covariance.data());

@@ -1,10 +1,11 @@
 #include <ceres/cost_function.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "calibration/geometry/bundle.h"
+#include "calibration/statistics/dense_solvers.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -80,13 +81,13 @@ std::vector<int> free_parameters(const Held& held, int intrinsics) {
 // Columns scaled to unit length by `size`, so that ranks mean something: a combination of terms that the points say
 // nothing about gets an error that is huge rather than infinite. None for numbers that are not finite.
 std::optional<Eigen::MatrixXd> inverse_of(const Eigen::MatrixXd& normal, const Eigen::VectorXd& size) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(size.asDiagonal() * normal * size.asDiagonal());
-    if (eigen.info() != Eigen::Success) {
+    const auto [values, vectors] = symmetric_eigen(size.asDiagonal() * normal * size.asDiagonal());
+    if (!values.allFinite()) {
         return std::nullopt;
     }
-    const Eigen::VectorXd eigenvalues = eigen.eigenvalues().cwiseMax(kLeastEigenvalue);
-    return size.asDiagonal() * eigen.eigenvectors() * eigenvalues.cwiseInverse().asDiagonal() *
-           eigen.eigenvectors().transpose() * size.asDiagonal();
+    const Eigen::VectorXd eigenvalues = values.cwiseMax(kLeastEigenvalue);
+    return size.asDiagonal() * vectors * eigenvalues.cwiseInverse().asDiagonal() * vectors.transpose() *
+           size.asDiagonal();
 }
 
 // How far the solution moves when each view is left out: δ = (N − N_v)⁻¹ g_v, the least squares' own step.
@@ -125,7 +126,7 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
         const Eigen::Matrix<double, 6, 1> size = own.pose.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
         const Matrix6 scaled = size.asDiagonal() * own.pose * size.asDiagonal();
         const Matrix6 inverse =
-            size.asDiagonal() * Matrix6(scaled.completeOrthogonalDecomposition().pseudoInverse()) * size.asDiagonal();
+            size.asDiagonal() * Matrix6(least_norm_solution(scaled, Matrix6::Identity())) * size.asDiagonal();
         const Eigen::MatrixXd own_mixed = own.mixed(free, Eigen::all);
         const Eigen::MatrixXd own_shared = own.shared(free, free);
         normal += own_shared;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/statistics/dense_solvers.h"
+
 namespace lensproof::calibration {
 
 Vec3d to_camera(const Pose& pose, const Vec2d& chart_mm) {
@@ -33,11 +35,11 @@ std::optional<Pose> planar_pose(const std::vector<Vec2d>& chart_mm, const std::v
         equations << x(0) * across, x(1) * across, x(2) * across;
         normal += equations.transpose() * equations;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
-    if (solver.info() != Eigen::Success || !(solver.eigenvalues()(1) > 1e-12 * solver.eigenvalues()(8))) {
+    const auto [values, vectors] = symmetric_eigen(normal);
+    if (!(values(1) > 1e-12 * values(8))) {
         return std::nullopt;
     }
-    Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+    Eigen::Matrix<double, 9, 1> h = vectors.col(0);
     double agreement = 0.0;  // H X must point along the ray, not against it
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Eigen::Vector3d seen =

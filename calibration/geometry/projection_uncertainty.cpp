@@ -1,9 +1,11 @@
 #include "calibration/geometry/projection_uncertainty.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+
+#include "calibration/statistics/dense_solvers.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -136,8 +138,7 @@ std::optional<double> projection_uncertainty_px(const GeometryFit& fit, const Ve
         variance += b * Eigen::Map<const Matrix6>(view.pose_covariance.data()) * b.transpose();
     }
     variance += *total * Eigen::Map<const RowMajor>(fit.shared_covariance.data(), shared, shared) * total->transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(variance, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(eigen.eigenvalues()(1), 0.0));
+    return std::sqrt(std::max(symmetric_eigen(variance).values(1), 0.0));
 }
 
 std::vector<ChartView> used_points(const std::vector<ChartView>& views, const GeometryFit& fit) {

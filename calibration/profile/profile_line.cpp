@@ -1,8 +1,10 @@
 #include "calibration/profile/profile_line.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
 #include <optional>
+
+#include "calibration/statistics/dense_solvers.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -25,7 +27,7 @@ std::optional<ProfileLine> straightness_of(const LinePoints& line, const CameraM
     if (pixels.size() < kFewestPoints) {
         return std::nullopt;
     }
-    const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
+    const Eigen::Vector3d normal = symmetric_eigen(moments).vectors.col(0);
     double squares = 0.0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         const Eigen::Vector3d foot = directions[i] - normal.dot(directions[i]) * normal;

@@ -1,4 +1,4 @@
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +10,7 @@
 #include "calibration/sharpness/siemens_star.h"
 #include "calibration/sharpness/star_outline.h"
 #include "calibration/sharpness/star_phase.h"
+#include "calibration/statistics/dense_solvers.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -133,8 +134,7 @@ std::optional<StarMap> map_of(std::vector<Circle> circles, const Vec2d& around) 
             normal += row * row.transpose();
         }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(normal);
-    Row u = solver.eigenvectors().col(0);
+    Row u = symmetric_eigen(normal).vectors.col(0);
     const double first = circles.back().angles[0];
     if (u(0) * std::cos(first) + u(2) * std::sin(first) < 0.0) {
         u = -u;

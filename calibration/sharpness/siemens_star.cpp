@@ -1,6 +1,6 @@
 #include "calibration/sharpness/siemens_star.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +8,7 @@
 
 #include "calibration/sharpness/star_modulation.h"
 #include "calibration/sharpness/star_phase.h"
+#include "calibration/statistics/dense_solvers.h"
 #include "calibration/statistics/student.h"
 
 namespace lensproof::calibration {
@@ -45,7 +46,7 @@ Eigen::VectorXd quadratic_weights(const std::vector<double>& x, const std::vecto
     const Eigen::VectorXd w = Eigen::Map<const Eigen::VectorXd>(weight.data(), count);
     const Eigen::Matrix3d normal = rows.transpose() * w.asDiagonal() * rows;
     const Eigen::Vector3d unit = slope ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX();
-    return w.asDiagonal() * rows * normal.ldlt().solve(unit);
+    return w.asDiagonal() * rows * solve_symmetric(normal, unit);
 }
 
 // The paper's light in the middle of its ring, and how far out that is; none where too little of it is in the picture,
@@ -94,7 +95,7 @@ StarEstimate contrast_of(const std::vector<StarModulation>& bins, const Paper& p
         rows.emplace_back(1.0, r * r - 1.0);
         normal += r * r * rows.back() * rows.back().transpose();  // as many pixels
     }
-    const Eigen::Vector2d at_paper = normal.ldlt().solve(Eigen::Vector2d::UnitX());
+    const Eigen::Vector2d at_paper = solve_symmetric(normal, Eigen::Vector2d::UnitX());
     StarEstimate level;
     for (std::size_t i = 0; i < bins.size(); ++i) {
         const double r = bins[i].radius_px / paper.radius_px;

@@ -1,9 +1,9 @@
 #include "calibration/sharpness/star_map.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <numbers>
 
+#include "calibration/statistics/dense_solvers.h"
 #include "engine/base/angle.h"
 
 namespace lensproof::calibration {
@@ -89,13 +89,13 @@ EllipseOutline outline(const StarMap& map, double radius_mm) {
     const Eigen::Matrix2d form = conic.topLeftCorner<2, 2>();
     const Eigen::Vector2d middle = -form.inverse() * conic.topRightCorner<2, 1>();
     const double level = -(conic(2, 2) + conic.topRightCorner<2, 1>().dot(middle));
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(form);  // ascending: the longer axis first
-    const Eigen::Vector2d along = axes.eigenvectors().col(0);
+    const SymmetricEigen axes = symmetric_eigen(form);  // ascending: the longer axis first
+    const Eigen::Vector2d along = axes.vectors.col(0);
     double angle = degrees(std::atan2(along(1), along(0)));
     angle -= angle > 90.0 ? 180.0 : angle <= -90.0 ? -180.0 : 0.0;
     return {.centre_px = {map.centre_px.x + middle(0), map.centre_px.y + middle(1)},
-            .long_half_axis_px = std::sqrt(level / axes.eigenvalues()(0)),
-            .short_half_axis_px = std::sqrt(level / axes.eigenvalues()(1)),
+            .long_half_axis_px = std::sqrt(level / axes.values(0)),
+            .short_half_axis_px = std::sqrt(level / axes.values(1)),
             .angle_deg = angle};
 }
 

@@ -1,6 +1,6 @@
 #include "calibration/twins/pixel_account.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -8,6 +8,7 @@
 #include "calibration/comparison/spline_surface.h"
 #include "calibration/comparison/warp.h"
 #include "calibration/detection/working_copy.h"
+#include "calibration/statistics/dense_solvers.h"
 
 namespace lensproof::calibration {
 
@@ -40,7 +41,7 @@ Eigen::VectorXd values_at(const cv::Mat& plane, const std::vector<cv::Point>& pi
 }
 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& design, const Eigen::VectorXd& values) {
-    return (design.transpose() * design).completeOrthogonalDecomposition().solve(design.transpose() * values);
+    return least_norm_solution(design.transpose() * design, design.transpose() * values);
 }
 
 double rms_left(const Eigen::MatrixXd& design, const Eigen::VectorXd& values) {
@@ -86,7 +87,7 @@ cv::Mat moved_to_photo(const formats::Image& twin, int channel, const std::vecto
         design.row(i) = place_terms(frame.unit(point.photo_px.x, point.photo_px.y), points.size());
         moves.row(i) << point.twin_px.x - point.photo_px.x, point.twin_px.y - point.photo_px.y;
     }
-    const Eigen::MatrixXd terms = design.completeOrthogonalDecomposition().solve(moves);
+    const Eigen::MatrixXd terms = least_norm_solution(design, moves);
     const SplineSurface surface(twin, channel, 1);
     cv::Mat moved = channel_plane(twin, channel);
     for (const cv::Point& at : pixels) {

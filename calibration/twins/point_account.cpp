@@ -7,6 +7,7 @@
 #include <set>
 
 #include "calibration/comparison/warp.h"
+#include "calibration/statistics/dense_solvers.h"
 
 namespace lensproof::calibration {
 
@@ -216,7 +217,7 @@ std::array<Vec2d, 2> steps_on_chart(const std::vector<Vec2d>& chart_mm, const st
         design.row(row) << 1.0, chart_mm[i].x - at_mm.x, chart_mm[i].y - at_mm.y;
         places.row(row) << image_px[i].x, image_px[i].y;
     }
-    const Eigen::MatrixXd terms = design.completeOrthogonalDecomposition().solve(places);
+    const Eigen::MatrixXd terms = least_norm_solution(design, places);
     return {Vec2d{terms(1, 0), terms(1, 1)}, Vec2d{terms(2, 0), terms(2, 1)}};
 }
 
