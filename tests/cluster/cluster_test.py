@@ -7,12 +7,10 @@ shards have when nobody dies. Exits with 77, which counts as skipped, where Dask
 import json
 import os
 import pathlib
-import random
 import re
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import unittest
 
@@ -22,6 +20,7 @@ except ImportError:
     print("distributed is not installed here (Debian: python3-distributed)")
     sys.exit(77)
 
+sys.dont_write_bytecode = True
 PROGRAM, SOURCE = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 SHARDS = int(sys.argv[4]) if sys.argv[3:4] == ["--shards"] else 16
 os.environ["LENSPROOF_PROGRAM"] = str(PROGRAM)
@@ -31,6 +30,7 @@ package = str(SOURCE / "experiments/python/lensproof")
 sys.path.insert(0, package)
 os.environ["PYTHONPATH"] = package
 import cluster  # noqa: E402
+from killer import Killer  # noqa: E402
 
 SCENE = """
 [camera]
@@ -52,27 +52,6 @@ square_mm = 110.0
 [pose]
 distance_mm = 2000.0
 """
-
-
-class Killer:
-    """Kills a worker under every tenth task, at random, as `tasks` are done."""
-
-    def __init__(self, client, tasks):
-        self.client = client
-        self.at = set(random.Random(1).sample(range(tasks), max(1, tasks // 10)))
-        self.killed = 0
-
-    def __call__(self, done, total, seconds_left):
-        if done in self.at:
-            self.at.remove(done)
-            threading.Timer(0.05, self.kill).start()
-
-    def kill(self):
-        busy = [address for address, keys in self.client.processing().items() if keys]
-        for address in busy[:1]:
-            pid = self.client.run(os.getpid, workers=[address])[address]
-            subprocess.run(["kill", "-9", str(pid)], check=False)
-            self.killed += 1
 
 
 class Cluster(unittest.TestCase):

@@ -1,0 +1,29 @@
+"""What befalls a test's workers."""
+import os
+import random
+import signal
+import threading
+
+
+def kill_process(client, worker):
+    os.kill(client.run(os.getpid, workers=[worker])[worker], signal.SIGKILL)
+
+
+class Killer:
+    """Ends a worker under every tenth task, at random, as `tasks` are done."""
+
+    def __init__(self, client, tasks, end=kill_process):
+        self.client, self.end = client, end
+        self.at = set(random.Random(1).sample(range(tasks), max(1, tasks // 10)))
+        self.killed = 0
+
+    def __call__(self, done, total, seconds_left):
+        if done in self.at:
+            self.at.remove(done)
+            threading.Timer(0.05, self.kill).start()
+
+    def kill(self):
+        busy = [worker for worker, keys in self.client.processing().items() if keys]
+        for worker in busy[:1]:
+            self.end(self.client, worker)
+            self.killed += 1
