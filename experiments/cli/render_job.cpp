@@ -29,19 +29,6 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using States = std::span<const render::RenderState>;  // of the passes
 
-/// The shard asked for; 1/1 where none is.
-Shard shard_of(const RenderJobOptions& options) {
-    if (options.shard.empty()) {
-        return {};
-    }
-    const std::optional<Shard> shard = parse_shard(options.shard);
-    if (!shard) {
-        throw InputError(fmt::format("--shard is \"{}\", expected i/n, such as 2/5, with 1 ≤ i ≤ n ≤ {}", options.shard,
-                                     kMostShards));
-    }
-    return *shard;
-}
-
 /// Samples a pixel of the whole render, of which a shard has a part: as many as asked for; else the scene's, or without
 /// end where something else ends it.
 std::uint32_t whole_samples(const RenderJob& job, const RenderJobOptions& options) {
@@ -52,7 +39,7 @@ std::uint32_t whole_samples(const RenderJob& job, const RenderJobOptions& option
 }
 
 render::SampleRange range_of(const RenderJob& job, const RenderJobOptions& options) {
-    const Shard shard = shard_of(options);
+    const Shard shard = read_shard(options.shard);
     const std::uint32_t samples = whole_samples(job, options);
     if (const std::uint32_t most = most_shards(samples); static_cast<std::uint32_t>(shard.count) > most) {
         throw InputError(
@@ -68,7 +55,7 @@ render::RenderGoal goal_of(const RenderJobOptions& options) {
         goal.seconds = options.time_s;
     }
     // n shards of relative error e each have e/√n together.
-    goal.noise = options.noise * std::sqrt(static_cast<double>(shard_of(options).count));
+    goal.noise = options.noise * std::sqrt(static_cast<double>(read_shard(options.shard).count));
     return goal;
 }
 
@@ -245,7 +232,7 @@ render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options
     }
     notes.has_digest = options.has_digest || !options.shard.empty();
     if (!options.shard.empty()) {
-        const Shard shard = shard_of(options);
+        const Shard shard = read_shard(options.shard);
         notes.metadata[kShardNote] = shard_set_text({.indices = {shard.index}, .count = shard.count});
     }
     return notes;
@@ -348,7 +335,7 @@ void report(Json json, States passes, const RenderJobOptions& options, const Ren
 
 RenderFiles render_files(const RenderJobOptions& options) {
     RenderFiles files{.exr = options.output, .png = {}, .half = options.half};
-    const Shard shard = shard_of(options);
+    const Shard shard = read_shard(options.shard);
     if (options.output.empty()) {
         files.exr = fs::path(options.scene)
                         .filename()

@@ -1,5 +1,6 @@
 // experiments/cli/run_command.cpp — `lensproof run EXPERIMENT`: end to end, to a report.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +18,7 @@
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/run_plan.h"
+#include "experiments/cli/shard.h"
 #include "experiments/cli/terminal.h"
 #include "experiments/draw/report/report.h"
 #include "experiments/runner/against.h"
@@ -24,6 +26,7 @@
 #include "experiments/runner/kept_steps.h"
 #include "experiments/runner/report_content.h"
 #include "experiments/runner/report_index.h"
+#include "experiments/runner/step_share.h"
 
 namespace lensproof::cli {
 
@@ -39,6 +42,7 @@ struct RunOptions {
     std::vector<std::string> only;
     std::string against;
     std::string junit;
+    std::string shard;
     std::string quality = "full";
 };
 
@@ -124,19 +128,60 @@ int tell_plan(const RunOptions& options, const runner::Experiment& experiment, c
     return kDone;
 }
 
-void say_failures(const findings::Findings& found) {
-    for (const findings::Failure& failure : found.failures) {
+void say_failures(const std::vector<findings::Failure>& failures) {
+    for (const findings::Failure& failure : failures) {
         print_message("lensproof: {}: {}\n", failure.study, failure.message);
     }
 }
 
-/// The gravest that befell: a failure of the machine, of the input, of a check.
-int exit_status(const findings::Findings& found) {
-    int status = findings::overall(found.checks) == findings::Verdict::pass ? kDone : kCheckFailed;
-    for (const findings::Failure& failure : found.failures) {
+/// The gravest that befell: `status`, a failure of the machine, of the input.
+int exit_status(int status, const std::vector<findings::Failure>& failures) {
+    for (const findings::Failure& failure : failures) {
         status = std::max(status, static_cast<int>(failure.is_of_input ? kUnusableInput : kInternalFailure));
     }
     return status;
+}
+
+/// Thrown where a signal came, by way of what was being done.
+std::runtime_error ended_early(const findings::Steps& steps, const std::filesystem::path& kept) {
+    return std::runtime_error(fmt::format("ended early, with {} steps finished; the same command goes on from {}",
+                                          steps.kept() + steps.made(), kept.string()));
+}
+
+/// Does a part of the steps, for a run that finds them kept, and writes no report.
+int run_share(const RunOptions& options, const runner::Experiment& experiment, const findings::RunSettings& settings,
+              const std::filesystem::path& kept) {
+    const Shard shard = read_shard(options.shard);
+    check_output_name(kept / "step");
+    check_json_name(options.common);
+    runner::StepShare share;
+    try {
+        const Interruption interruption;
+        StepProgress progress(options.common.quiet, settings.steps);
+        share = runner::carry_out_share(experiment, shard.index, shard.count, settings, std::ref(progress));
+    } catch (const Interrupted&) {
+        throw ended_early(settings.steps, kept);
+    }
+    say_failures(share.failures);
+    if (prints_text(options.common)) {
+        print("share {} of the steps: {} done, {} kept before, in {}\n", options.shard, settings.steps.made(),
+              settings.steps.kept(), kept.string());
+    }
+    if (!share.left.empty() && !options.common.quiet) {
+        show_message(
+            fmt::format("lensproof: left to the run that writes the report, which finds their steps as it goes: {}\n",
+                        fmt::join(share.left, ", ")));
+    }
+    Json failures = Json::list();
+    for (const findings::Failure& failure : share.failures) {
+        failures.push_back({{"step", failure.study}, {"message", failure.message}});
+    }
+    write_json_result(options.common, {{"share", options.shard},
+                                       {"steps", share.steps},
+                                       {"made", settings.steps.made()},
+                                       {"failures", std::move(failures)},
+                                       {"left", share.left}});
+    return exit_status(kDone, share.failures);
 }
 
 /// The page of the reports that lie beside this one: of the usual folder, or where there is one already.
@@ -164,6 +209,9 @@ int run(const RunOptions& options) {
     if (options.lists || options.is_dry) {
         return tell_plan(options, experiment, settings);
     }
+    if (!options.shard.empty()) {
+        return run_share(options, experiment, settings, kept);
+    }
     const std::optional<runner::EarlierReport> earlier =
         options.against.empty() ? std::nullopt : std::optional(runner::read_earlier_report(options.against));
     if (!options.junit.empty()) {
@@ -180,8 +228,7 @@ int run(const RunOptions& options) {
         StepProgress progress(options.common.quiet, settings.steps);
         found = runner::run_experiment(experiment, settings, std::ref(progress));
     } catch (const Interrupted&) {
-        throw std::runtime_error(fmt::format("ended early, with {} steps finished; the same command goes on from {}",
-                                             settings.steps.kept() + settings.steps.made(), kept.string()));
+        throw ended_early(settings.steps, kept);
     }
     say_what_was_kept(options, settings.steps, kept);
     Json report = runner::report_json(experiment, found, settings);
@@ -195,7 +242,7 @@ int run(const RunOptions& options) {
         write_file(options.junit, runner::junit_xml(experiment.title, found));
     }
     refresh_index(options, folder);
-    say_failures(found);
+    say_failures(found.failures);
     if (prints_text(options.common)) {
         print_checks(found.checks);
         print("{}", earlier ? runner::against_text(report["against"]) : "");
@@ -203,7 +250,8 @@ int run(const RunOptions& options) {
     }
     write_json_result(options.common, report);
     check_place(delivery);
-    return exit_status(found);
+    const bool holds = findings::overall(found.checks) == findings::Verdict::pass;
+    return exit_status(holds ? kDone : kCheckFailed, found.failures);
 }
 
 }  // namespace
@@ -225,12 +273,19 @@ void add_run_command(Program& program) {
             "draft: pictures of scenes have half the width and height, and a sixteenth of the samples of a pixel")
         .check(one_of({"draft", "full"}))
         .shows_default();
+    Option against = command.add_option(
+        "--against", options->against,
+        "An earlier report (its folder, or report.json): what changed since, verdict by verdict, number by number and "
+        "picture by picture");
+    against.type_name("OLD");
+    Option junit = command.add_option("--junit", options->junit, "Write the checks as JUnit's XML too");
+    junit.type_name("FILE");
     command
-        .add_option("--against", options->against,
-                    "An earlier report (its folder, or report.json): what changed since, verdict by verdict, number by "
-                    "number and picture by picture")
-        .type_name("OLD");
-    command.add_option("--junit", options->junit, "Write the checks as JUnit's XML too").type_name("FILE");
+        .add_option("--shard", options->shard,
+                    "Do the i-th of n parts of the steps, for a run that finds them in the folder, and write no report")
+        .type_name("i/n")
+        .excludes(against)
+        .excludes(junit);
     add_common_options(command, options->common);
     command.runs([options] { return run(*options); });
 }

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <string_view>
 
+#include "engine/base/input_error.h"
+
 namespace lensproof::cli {
 
 namespace {
@@ -64,10 +66,16 @@ std::optional<ShardSet> parse_shard_set(const std::string& text) {
     return set;
 }
 
-std::optional<Shard> parse_shard(const std::string& text) {
+Shard read_shard(const std::string& text) {
+    if (text.empty()) {
+        return {};
+    }
     const std::optional<ShardSet> set = parse_shard_set(text);
-    const bool is_one = set && set->indices.size() == 1 && text.find('-') == std::string::npos;
-    return is_one ? std::optional(Shard{.index = set->indices[0], .count = set->count}) : std::nullopt;
+    if (!set || set->indices.size() != 1 || text.find('-') != std::string::npos) {
+        throw InputError(
+            fmt::format("--shard is \"{}\", expected i/n, such as 2/5, with 1 ≤ i ≤ n ≤ {}", text, kMostShards));
+    }
+    return {.index = set->indices[0], .count = set->count};
 }
 
 std::vector<int> ShardSet::missing() const {

@@ -22,11 +22,12 @@ struct Shard {
 
 inline constexpr int kMostShards = 10000;
 
+/// What --shard was given, "2/5"; 1/1 where that is nothing. Throws InputError where it is not i/n with 1 ≤ i ≤ n ≤
+/// kMostShards.
+Shard read_shard(const std::string& text);
+
 /// As many as `samples` have blocks.
 std::uint32_t most_shards(std::uint32_t samples);
-
-/// Reads "2/5". Nothing where it is not i/n with 1 ≤ i ≤ n ≤ kMostShards.
-std::optional<Shard> parse_shard(const std::string& text);
 
 /// What a picture's file says of the shards in it: "2/5", or after a merge of some "1-3,5/8", or of all "1-8/8".
 struct ShardSet {

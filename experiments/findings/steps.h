@@ -26,12 +26,20 @@ struct StepInput {
     std::vector<std::filesystem::path> files{};
 };
 
-/// A step that is still to be asked for.
+struct RunSettings;  // study.h
+
+/// Reports what is being done ("tessar, view 2 of 6") and how much of it is.
+using RunProgress = std::function<void(const std::string& step, double done)>;
+
+/// A step that is still to be asked for. It may refer to what its study has read, and lives no longer than that.
 struct PlannedStep {
     std::string kind;
     std::string label;
     StepInput input;
     double usual_seconds = 1.0;  // roughly, on two cores, where this machine has not done it before
+    /// Does this step alone, among RunSettings::steps, as the study would: it waits for no other. None: the study has
+    /// to.
+    std::function<void(const RunSettings& settings, const RunProgress& progress)> carry_out{};
 };
 
 /// Parts of a run that take long: a picture rendered, a camera measured, a value of a sweep. Each is done once and kept

@@ -31,9 +31,6 @@ struct RunSettings {
     Steps steps{};          // what takes long is done as one of these
 };
 
-/// Reports what is being done ("tessar, view 2 of 6") and how much of it is.
-using RunProgress = std::function<void(const std::string& step, double done)>;
-
 /// Carries a study out. The same settings give the same findings, whatever the number of threads; `before` are those of
 /// the studies that stand before it in the list (experiments/runner/experiment.cpp).
 using CarryOut =

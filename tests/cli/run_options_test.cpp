@@ -60,6 +60,30 @@ TEST_F(RunOptionsTest, DoesAPartAlone) {
     EXPECT_TRUE(says(wrong.err, "expected a study of e.toml: lengths, spots"));
 }
 
+// Shares of the steps that one machine or several do in any order; the run that writes the report finds all of them
+// kept, and says what it says without.
+TEST_F(RunOptionsTest, DoesSharesOfTheSteps) {
+    EXPECT_EQ(place_.run({"run", "e.toml", "-o", "whole"}).status, 0);
+    std::size_t made = 0;
+    for (const char* shard : {"3/3", "1/3", "2/3"}) {
+        const Outcome share = place_.run({"run", "e.toml", "-o", "shared", "--shard", shard, "--json", "-"});
+        EXPECT_EQ(share.status, 0) << share.err;
+        made += json::parse(share.out)["made"].get<std::size_t>();
+    }
+    EXPECT_EQ(made, 10U);
+    EXPECT_FALSE(place_.has("shared/report.json"));
+    const Outcome rest = place_.run({"run", "e.toml", "-o", "shared"});
+    EXPECT_TRUE(says(rest.err, "10 of 10 steps were finished before")) << rest.err;
+    EXPECT_EQ(place_.content("shared/report.json"), place_.content("whole/report.json"));
+    EXPECT_EQ(place_.content("shared/report.html"), place_.content("whole/report.html"));
+
+    const Outcome wrong = place_.run({"run", "e.toml", "-o", "other", "--shard", "4/3"});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_TRUE(says(wrong.err, "--shard is \"4/3\", expected i/n"));
+    EXPECT_EQ(place_.run({"run", "e.toml", "-o", "other", "--shard", "1/3", "--junit", "x.xml"}).status, 2);
+    EXPECT_FALSE(place_.has("other"));
+}
+
 // No lens opens to f/0.5: that sweep has no value, the others have theirs, and the status says of what kind the fault
 // is.
 TEST_F(RunOptionsTest, AFailedStudyStandsInTheReport) {

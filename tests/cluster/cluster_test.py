@@ -54,6 +54,19 @@ distance_mm = 2000.0
 """
 
 
+# A hundred settings of a lens.
+SWEEP = """
+title = "Settings"
+[[sweeps]]
+name = "settings"
+lens = "tessar"
+f_number = { from = 2.8, to = 16.0, count = 10, spacing = "logarithmic" }
+focus_distance_mm = { from = 1000.0, to = 10000.0, count = 10 }
+field_deg = 10.0
+measure = ["spot_rms_um", "chief_ray_height_mm"]
+"""
+
+
 class Cluster(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -124,6 +137,21 @@ class Cluster(unittest.TestCase):
             place, = cluster.experiments([experiment], self.folder / "reports", self.client)
             self.assertEqual(json.loads((place / "report.json").read_text())["title"], f"at {f_number}")
         self.assertEqual([file.name for file in (self.folder / "reports").iterdir()], ["passage"])
+
+    def test_a_sweep_is_shared_out_and_its_report_has_the_same_bytes_whoever_dies(self):
+        experiment = self.folder / "settings.toml"
+        experiment.write_text(SWEEP)
+        killer = Killer(self.client, 10)
+        place, = cluster.experiments([experiment], self.folder / "shared", self.client, progress=killer, shards=10)
+        self.assertGreater(killer.killed, 0)
+        told = json.loads(subprocess.run([PROGRAM, "run", experiment, "-o", place, "--dry-run", "--json", "-"],
+                                         capture_output=True, check=True).stdout)
+        self.assertEqual((told["steps"], told["kept"]), (100, 100))
+        alone = self.folder / "alone" / "settings"
+        subprocess.run([PROGRAM, "run", experiment, "-o", alone, "--quiet"], check=True)
+        for name in ("report.json", "report.html"):
+            self.assertEqual((place / name).read_bytes(), (alone / name).read_bytes())
+        self.assertEqual([file.name for file in (self.folder / "shared").iterdir()], ["settings"])
 
     def test_what_no_other_try_changes_ends_at_once(self):
         with self.assertRaises(cluster.TaskFailed) as failed:

@@ -29,6 +29,7 @@ import uuid
 from collections.abc import Callable, Iterable, Sequence
 
 UNUSABLE_INPUT = 2  # an exit status: another try comes to the same
+SECONDS_OF_A_SHARD = 5.0  # of an experiment's steps, about
 
 
 class TaskFailed(Exception):
@@ -159,6 +160,12 @@ def run(goals: Sequence[Task], client, attempts: int = 10, progress: Progress = 
                     start(later)
 
 
+def _one_thread(options: Sequence[str]) -> tuple[str, ...]:
+    """The options, with one thread unless they say how many: Dask gives each core of a worker a task."""
+    said = any(option.split("=")[0] == "--threads" for option in options)
+    return (*options,) if said else (*options, "--threads", "1")
+
+
 def _digest(*what) -> str:
     return hashlib.sha256(json.dumps(what).encode()).hexdigest()[:16]
 
@@ -171,7 +178,7 @@ def render_task(scene: os.PathLike | str, folder: os.PathLike | str, shards: int
     not depend on the order in which they come, and the folder never holds much more than the groups.
     """
     folder = pathlib.Path(folder).resolve()
-    arguments = ("render", str(pathlib.Path(scene).resolve()), *options, "--quiet")
+    arguments = ("render", str(pathlib.Path(scene).resolve()), *_one_thread(options), "--quiet")
 
     def part(number: int) -> Task:
         result = folder / f"part-{number}.exr"
@@ -226,31 +233,66 @@ def sweep(commands: Sequence[Sequence[str]], folder: os.PathLike | str, client, 
         files = [pathlib.Path(word) for word in command]
         name = _digest(version, list(command), [file.read_bytes().hex() for file in files if file.is_file()])
         result = folder / f"{command[0]}-{name}.json"
-        tasks.append(Task((*command, "--json", str(result), "--quiet"), result))
+        tasks.append(Task((*_one_thread(command), "--json", str(result), "--quiet"), result))
     run(tasks, client, attempts, progress)
     return [json.loads(task.result.read_text()) for task in tasks]
 
 
-def experiments(files: Sequence[os.PathLike | str], folder: os.PathLike | str, client, attempts: int = 10,
-                progress: Progress = show_progress) -> list[pathlib.Path]:
-    """Runs experiments, each into a folder of its name, and returns the folders.
+def _shards_for(command: Sequence[str], workers: int) -> int:
+    """Of an experiment's steps that are known beforehand and not done yet, so many that each has seconds of work: what
+    starting a process and a worker's death cost is then little, and none is long to wait for at the end."""
+    told = subprocess.run([program(), *command, "--dry-run", "--json", "-", "--quiet"], stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True)
+    if told.returncode:
+        raise TaskFailed(f"lensproof {' '.join(command)}: {told.stderr.strip()}", told.returncode)
+    plan = json.loads(told.stdout)
+    waiting = plan["steps"] - plan["kept"]
+    return min(waiting, max(2 * workers, math.ceil(plan["seconds"] / SECONDS_OF_A_SHARD)))
 
-    One that was ended goes on from its steps. A report whose checks do not hold is a report.
+
+def experiment_task(file: os.PathLike | str, folder: os.PathLike | str, shards: int,
+                    options: Sequence[str] = ()) -> Task:
+    """An experiment's report in the folder, as a task that comes after those that do its steps, which the folder keeps.
+
+    What a task that is killed had finished of its steps is not done again, and a step that two come to do is the same of
+    both. The task's result is a file beside the folder, of a new name: an earlier report may be of another file or
+    program; what is the same in it, its steps know.
     """
     folder = pathlib.Path(folder).resolve()
-    tasks = []
-    places = []
-    for file in (pathlib.Path(name).resolve() for name in files):
-        # An earlier report may be of another file or program; what is the same in it, its steps know.
-        place = folder / file.stem
-        done = folder / f".{file.stem}-{uuid.uuid4().hex}.json"
-        tasks.append(Task(("run", str(file), "-o", str(place), "--json", str(done), "--quiet"), done))
-        places.append(place)
+    command = ("run", str(pathlib.Path(file).resolve()), "-o", str(folder), "--quiet")
+    done = folder.with_name(f".{folder.name}-{uuid.uuid4().hex}")
+
+    def share(number: int) -> Task:
+        result = done.with_name(f"{done.name}-{number}.json")
+        return Task((*command, *_one_thread(options), "--shard", f"{number}/{shards}", "--json", str(result)), result)
+
+    shares = tuple(share(number) for number in range(1, shards + 1)) if shards > 1 else ()
+    result = done.with_name(f"{done.name}.json")
+    return Task((*command, *options, "--json", str(result)), result, after=shares, consumes=True)
+
+
+def experiments(files: Sequence[os.PathLike | str], folder: os.PathLike | str, client, attempts: int = 10,
+                progress: Progress = show_progress, options: Sequence[str] = (),
+                shards: int | None = None) -> list[pathlib.Path]:
+    """Runs experiments, each into a folder of its name, and returns the folders.
+
+    `options`: of `lensproof run`, as ["--quality", "draft"]. The steps of an experiment that its studies know beforehand,
+    such as each value of a sweep or each pass of a scene, are shared out; the last task finds them kept, does the others
+    and writes the report. `shards`: of each, in place of as many as suit. A call that was ended goes on from the steps. A
+    report whose checks do not hold is a report.
+    """
+    folder = pathlib.Path(folder).resolve()
+    places = [folder / pathlib.Path(file).stem for file in files]
+    goals = []
+    for file, place in zip(files, places):
+        many = shards or _shards_for(["run", str(file), "-o", str(place), *options], len(client.nthreads()))
+        goals.append(experiment_task(file, place, many, options))
     try:
-        run(tasks, client, attempts, progress)
+        run(goals, client, attempts, progress)
     finally:
-        for task in tasks:
-            task.result.unlink(missing_ok=True)
+        for goal in goals:
+            for task in (goal, *goal.after):
+                task.result.unlink(missing_ok=True)
     return places
 
 
@@ -265,6 +307,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = commands.add_parser("experiments", help="run experiments, each into a folder of its name")
     command.add_argument("files", nargs="+")
     command.add_argument("-o", "--output", required=True, help="folder to write")
+    command.add_argument("--shards", type=int, help="of each experiment's steps (default: as many as suit)")
     for command in commands.choices.values():
         command.add_argument("--scheduler", help="its address (default: workers on this machine, a process a core)")
         command.add_argument("--attempts", type=int, default=10, help="of a task at most (default: 10)")
@@ -280,7 +323,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if known.command == "render":
             render(known.scene, known.output, client, known.shards, others, known.attempts)
         else:
-            experiments(known.files, known.output, client, known.attempts)
+            experiments(known.files, known.output, client, known.attempts, shards=known.shards)
     except KeyboardInterrupt:
         print("ended early; the same command goes on from there", file=sys.stderr)
         return 3

@@ -266,15 +266,19 @@ std::vector<findings::Study> read_edge_diffraction(findings::ExperimentFile& fil
     std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("edge_diffraction")) {
         for (const EdgeSetting& setting : read_settings(table, file)) {
-            const auto carry_out = [setting](const findings::RunSettings& run, const findings::RunProgress& progress,
-                                             const findings::Findings&) {
+            const auto measured = [setting](const findings::RunSettings& run, const findings::RunProgress& progress) {
                 progress(label_of(setting), 0.0);
-                return edge_findings({{setting, run.steps.step(kEdgeStep, input_of(setting, run),
-                                                               [&] { return measure_edges(setting, run.seed); })}});
+                return run.steps.step(kEdgeStep, input_of(setting, run),
+                                      [&] { return measure_edges(setting, run.seed); });
             };
-            studies.push_back({id_of(setting), carry_out, [setting](const findings::RunSettings& run) {
+            const auto carry_out = [setting, measured](const findings::RunSettings& run,
+                                                       const findings::RunProgress& progress,
+                                                       const findings::Findings&) {
+                return edge_findings({{setting, measured(run, progress)}});
+            };
+            studies.push_back({id_of(setting), carry_out, [setting, measured](const findings::RunSettings& run) {
                                    return std::vector<findings::PlannedStep>{
-                                       {kEdgeStep, label_of(setting), input_of(setting, run), 8.0}};
+                                       {kEdgeStep, label_of(setting), input_of(setting, run), 8.0, measured}};
                                }});
         }
     }

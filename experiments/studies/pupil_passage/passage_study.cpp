@@ -194,17 +194,18 @@ std::vector<findings::Study> read_pupil_passage(findings::ExperimentFile& file) 
     for (TomlTable& table : file.top.tables("pupil_passage")) {
         const PassageSetting setting = read_passage_setting(table);
         file.add_subject(table, "lens", id_of(setting));
-        const auto carry_out = [setting](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                         const findings::Findings&) {
+        const auto counted = [setting](const findings::RunSettings& settings, const findings::RunProgress& progress) {
             progress(id_of(setting), 0.0);
-            optics::Lens lens = passage_lens(setting);
-            PassageCounts counts = settings.steps.step(kPassageStep, input_of(setting, settings),
-                                                       [&] { return count_passage(lens, settings.seed); });
-            return passage_findings({{std::move(counts), setting, std::move(lens)}});
+            return settings.steps.step(kPassageStep, input_of(setting, settings),
+                                       [&] { return count_passage(passage_lens(setting), settings.seed); });
         };
-        studies.push_back({id_of(setting), carry_out, [setting](const findings::RunSettings& settings) {
-                               return std::vector<findings::PlannedStep>{
-                                   {kPassageStep, "paths that leave the front", input_of(setting, settings), 2.0}};
+        const auto carry_out = [setting, counted](const findings::RunSettings& settings,
+                                                  const findings::RunProgress& progress, const findings::Findings&) {
+            return passage_findings({{counted(settings, progress), setting, passage_lens(setting)}});
+        };
+        studies.push_back({id_of(setting), carry_out, [setting, counted](const findings::RunSettings& settings) {
+                               return std::vector<findings::PlannedStep>{{kPassageStep, "paths that leave the front",
+                                                                          input_of(setting, settings), 2.0, counted}};
                            }});
     }
     return studies;

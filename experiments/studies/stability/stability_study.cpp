@@ -192,6 +192,11 @@ findings::StepInput input_of(const Extreme& extreme, const findings::RunSettings
     return {.settings = {{"id", extreme.id}, {"seed", settings.seed}}};
 }
 
+std::vector<StabilityPoint> points_of(const Extreme& extreme, const findings::RunSettings& settings) {
+    return settings.steps.step(kExtremeStep, input_of(extreme, settings),
+                               [&] { return measure_stability(extreme, settings.seed).points; });
+}
+
 }  // namespace
 
 std::vector<findings::Study> read_stability(findings::ExperimentFile& file) {
@@ -211,7 +216,10 @@ std::vector<findings::Study> read_stability(findings::ExperimentFile& file) {
     const auto planned = [extremes](const findings::RunSettings& settings) {
         std::vector<findings::PlannedStep> steps;
         std::ranges::transform(extremes, std::back_inserter(steps), [&](const Extreme& extreme) {
-            return findings::PlannedStep{kExtremeStep, extreme.id, input_of(extreme, settings), 3.0};
+            const auto carry_out = [&extreme](const findings::RunSettings& run, const findings::RunProgress&) {
+                points_of(extreme, run);
+            };
+            return findings::PlannedStep{kExtremeStep, extreme.id, input_of(extreme, settings), 3.0, carry_out};
         });
         return steps;
     };
@@ -224,10 +232,7 @@ std::vector<findings::Study> read_stability(findings::ExperimentFile& file) {
             count, settings.threads,
             [&](int i) {
                 const auto at = static_cast<std::size_t>(i);
-                sweeps[at] = {.extreme = extremes[at],
-                              .points = settings.steps.step(kExtremeStep, input_of(extremes[at], settings), [&] {
-                                  return measure_stability(extremes[at], settings.seed).points;
-                              })};
+                sweeps[at] = {.extreme = extremes[at], .points = points_of(extremes[at], settings)};
             },
             [&](int done) { progress("extremes", static_cast<double>(done) / count); });
         return stability_findings(sweeps);

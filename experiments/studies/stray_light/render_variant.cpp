@@ -148,19 +148,24 @@ class VariantSteps {
     [[nodiscard]] std::vector<findings::PlannedStep> planned() const {
         std::vector<findings::PlannedStep> steps;
         const double pixels = static_cast<double>(setup_.camera.sensor.width) * setup_.camera.sensor.height;
-        for (const std::string& pass : scene_.passes) {
+        for (std::size_t i = 0; i < scene_.passes.size(); ++i) {
+            const std::string& pass = scene_.passes[i];
             constexpr double kSecondsOfSample = 1e-6;  // of the passes' usual scenes
-            steps.push_back(
-                {kPass, name_of(pass), pass_input(pass), 1.0 + kSecondsOfSample * pixels * samples_of(pass)});
+            steps.push_back({kPass, name_of(pass), pass_input(pass), 1.0 + kSecondsOfSample * pixels * samples_of(pass),
+                             alone([i](VariantSteps& own) { return own.pass(i); })});
         }
         if (scene_.ghosts_deg) {
-            steps.push_back({kGhosts, name_of("ghosts one by one"), input({{"source_deg", *scene_.ghosts_deg}}), 5.0});
+            const double source_deg = *scene_.ghosts_deg;
+            steps.push_back({kGhosts, name_of("ghosts one by one"), input({{"source_deg", source_deg}}), 5.0,
+                             alone([source_deg](VariantSteps& own) { return own.ghosts(source_deg); })});
         }
         if (scene_.has_veiling_glare) {
-            steps.push_back({kGlare, name_of("veiling glare"), input({}), 10.0});
+            steps.push_back({kGlare, name_of("veiling glare"), input({}), 10.0,
+                             alone([](VariantSteps& own) { return own.veiling_glare(); })});
         }
         if (scene_.has_audit) {
-            steps.push_back({kAudit, name_of("energy audit"), input({}), 5.0});
+            steps.push_back({kAudit, name_of("energy audit"), input({}), 5.0,
+                             alone([](VariantSteps& own) { return own.fates(); })});
         }
         return steps;
     }
@@ -170,6 +175,17 @@ class VariantSteps {
     static constexpr const char* kGhosts = "stray-ghosts";
     static constexpr const char* kGlare = "stray-glare";
     static constexpr const char* kAudit = "stray-audit";
+
+    /// A step of this variant by itself.
+    template <class Step>
+    [[nodiscard]] std::function<void(const findings::RunSettings&, const findings::RunProgress&)> alone(
+        const Step& step) const {
+        return [&scene = scene_, &variant = variant_, step](const findings::RunSettings& settings,
+                                                            const findings::RunProgress& progress) {
+            VariantSteps own(scene, variant, settings, progress);
+            static_cast<void>(step(own));
+        };
+    }
 
     [[nodiscard]] findings::StepInput input(Json what) const {
         what["scene"] = variant_.stated;

@@ -54,7 +54,7 @@ formats::Image picture_of(const std::vector<PassPicture>& passes);
 VariantFindings render_variant(const StrayScene& scene, const StrayVariant& variant,
                                const findings::RunSettings& settings, const findings::RunProgress& progress);
 
-/// The steps that this takes.
+/// The steps that this takes; they refer to scene and variant.
 std::vector<findings::PlannedStep> steps_of_variant(const StrayScene& scene, const StrayVariant& variant,
                                                     const findings::RunSettings& settings);
 

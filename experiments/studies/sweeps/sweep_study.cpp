@@ -157,11 +157,20 @@ findings::StepInput input_of(const Sweep& sweep, std::size_t i) {
             .files = formats::files_of_lens(sweep_setting(sweep.axes, i).lens)};
 }
 
+SweepValue value_of(const Sweep& sweep, std::size_t i, SweptLens& lens, const findings::Steps& steps) {
+    return steps.step(kSweepStep, input_of(sweep, i),
+                      [&] { return lens.measure(sweep_setting(sweep.axes, i), sweep.quantities); });
+}
+
 std::vector<findings::PlannedStep> steps_of(const Sweep& sweep) {
     std::vector<findings::PlannedStep> steps;
     for (std::size_t i = 0; i < combinations(sweep.axes); ++i) {
         constexpr double kUsualSeconds = 0.05;
-        steps.push_back({kSweepStep, combination_text(sweep, i), input_of(sweep, i), kUsualSeconds});
+        const auto carry_out = [&sweep, i](const findings::RunSettings& settings, const findings::RunProgress&) {
+            SweptLens lens;
+            value_of(sweep, i, lens, settings.steps);
+        };
+        steps.push_back({kSweepStep, combination_text(sweep, i), input_of(sweep, i), kUsualSeconds, carry_out});
     }
     return steps;
 }
@@ -262,9 +271,7 @@ std::vector<SweepValue> measure_sweep(const Sweep& sweep, const findings::RunSet
         [&] {
             return [&, lens = SweptLens()](int at) mutable {
                 const auto i = static_cast<std::size_t>(at);
-                values[i] = settings.steps.step(kSweepStep, input_of(sweep, i), [&] {
-                    return lens.measure(sweep_setting(sweep.axes, i), sweep.quantities);
-                });
+                values[i] = value_of(sweep, i, lens, settings.steps);
             };
         },
         [&](int done) { progress(sweep.title, static_cast<double>(done) / static_cast<double>(count)); });

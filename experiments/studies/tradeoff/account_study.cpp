@@ -296,22 +296,27 @@ PlannedOutcome hold_to_account(const SceneCase& planned, const Tolerance& tolera
     return outcome;
 }
 
+static PlannedOutcome outcome_of(const PlannedSet& set, const SceneCase& planned,
+                                 const findings::RunSettings& settings) {
+    PilotSettings own;
+    own.probe.seed = settings.seed;
+    own.probe.threads = settings.threads;
+    own.cache = settings.cache;
+    return settings.steps.step(kAccountStep, input_of(set, planned, settings),
+                               [&] { return hold_to_account(planned, set.tolerance, own); });
+}
+
 std::vector<findings::Study> read_planned(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
     for (TomlTable& table : file.top.tables("planned")) {
         const PlannedSet set = read_set(table, file);
         const auto carry_out = [set](const findings::RunSettings& settings, const findings::RunProgress& progress,
                                      const findings::Findings&) {
-            PilotSettings own;
-            own.probe.seed = settings.seed;
-            own.probe.threads = settings.threads;
-            own.cache = settings.cache;
             std::vector<PlannedOutcome> outcomes;
             for (const SceneCase& planned : set.cases) {
                 progress(fmt::format("{}: {}", set.name, planned.name),
                          static_cast<double>(outcomes.size()) / static_cast<double>(set.cases.size()));
-                outcomes.push_back(settings.steps.step(kAccountStep, input_of(set, planned, settings),
-                                                       [&] { return hold_to_account(planned, set.tolerance, own); }));
+                outcomes.push_back(outcome_of(set, planned, settings));
             }
             return account_findings(set, outcomes);
         };
@@ -319,7 +324,11 @@ std::vector<findings::Study> read_planned(findings::ExperimentFile& file) {
             {set.name, carry_out, [set](const findings::RunSettings& settings) {
                  std::vector<findings::PlannedStep> steps;
                  std::ranges::transform(set.cases, std::back_inserter(steps), [&](const SceneCase& planned) {
-                     return findings::PlannedStep{kAccountStep, planned.name, input_of(set, planned, settings), 30.0};
+                     const auto alone = [&](const findings::RunSettings& run, const findings::RunProgress&) {
+                         outcome_of(set, planned, run);
+                     };
+                     return findings::PlannedStep{kAccountStep, planned.name, input_of(set, planned, settings), 30.0,
+                                                  alone};
                  });
                  return steps;
              }});

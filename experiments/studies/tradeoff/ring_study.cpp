@@ -157,19 +157,23 @@ std::vector<findings::Study> read_analysis_rings(findings::ExperimentFile& file)
                                                      {"f_number", analysed.f_number.value_or(0.0)},
                                                      {"fields_deg", analysed.fields_deg}},
                                         .files = formats::files_of_lens(analysed.lens)};
-        const auto carry_out = [analysed, input](const findings::RunSettings& settings,
-                                                 const findings::RunProgress& progress, const findings::Findings&) {
+        const auto measured = [analysed, input](const findings::RunSettings& settings,
+                                                const findings::RunProgress& progress) {
+            progress(label_of(analysed), 0.0);
+            return settings.steps.step(kRingStep, input, [&] { return measure_rings(analysed); });
+        };
+        const auto carry_out = [analysed, input, measured](const findings::RunSettings& settings,
+                                                           const findings::RunProgress& progress,
+                                                           const findings::Findings&) {
             findings::Findings found{.subjects_title = "Analyses"};
             Json list = Json::list();
-            progress(label_of(analysed), 0.0);
-            add_findings(analysed, settings.steps.step(kRingStep, input, [&] { return measure_rings(analysed); }),
-                         found, list);
+            add_findings(analysed, measured(settings, progress), found, list);
             std::ranges::copy(input.files, std::back_inserter(found.inputs));
             found.tables = {{"analysis_rings", std::move(list)}};
             return found;
         };
-        studies.push_back({id, carry_out, [input, label = label_of(analysed)](const findings::RunSettings&) {
-                               return std::vector<findings::PlannedStep>{{kRingStep, label, input, 10.0}};
+        studies.push_back({id, carry_out, [input, measured, label = label_of(analysed)](const findings::RunSettings&) {
+                               return std::vector<findings::PlannedStep>{{kRingStep, label, input, 10.0, measured}};
                            }});
     }
     return studies;

@@ -130,7 +130,10 @@ std::vector<findings::Study> read_tradeoff(findings::ExperimentFile& file) {
     const auto planned = [scenes](const findings::RunSettings& settings) {
         std::vector<findings::PlannedStep> steps;
         std::ranges::transform(scenes, std::back_inserter(steps), [&](const TradeoffScene& scene) {
-            return findings::PlannedStep{kTradeoffStep, scene.title, input_of(scene, settings), 60.0};
+            const auto carry_out = [&scene](const findings::RunSettings& run, const findings::RunProgress& progress) {
+                measure(scene, run, progress);
+            };
+            return findings::PlannedStep{kTradeoffStep, scene.title, input_of(scene, settings), 60.0, carry_out};
         });
         return steps;
     };
