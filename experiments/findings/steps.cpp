@@ -19,7 +19,7 @@ std::string hash_of_file(const std::filesystem::path& file) {
     if (std::filesystem::is_regular_file(file, error)) {
         stream.open(file, std::ios::binary);
     }
-    std::string chunk(std::size_t{1} << 20U, '\0');
+    std::string chunk(std::size_t{1} << 16U, '\0');
     std::uint64_t hash = 0;
     while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())), stream.gcount() > 0) {
         hash = hash_of(std::string_view(chunk).substr(0, static_cast<std::size_t>(stream.gcount())), hash);

@@ -14,16 +14,25 @@ namespace lensproof::runner {
 
 namespace {
 
-/// One after the other in turns, since those next to each other take about as long.
+/// In turns, since those that are new tend to lie together; a few at a time, since neighbours share a lens.
 std::vector<findings::PlannedStep> steps_of_share(const Experiment& experiment, int index, int count,
                                                   const findings::RunSettings& settings) {
-    std::vector<findings::PlannedStep> mine;
-    int place = 0;
+    std::vector<findings::PlannedStep> all;
     for (const auto& [table, study] : experiment.studies) {
         for (findings::PlannedStep& step : study.steps ? study.steps(settings) : std::vector<findings::PlannedStep>{}) {
-            if (step.carry_out && place++ % count == index - 1) {
-                mine.push_back(std::move(step));
+            if (step.carry_out) {
+                all.push_back(std::move(step));
             }
+        }
+    }
+    constexpr std::size_t kTurns = 4;
+    constexpr std::size_t kMostTogether = 16;
+    const auto shares = static_cast<std::size_t>(count);
+    const std::size_t together = std::clamp(all.size() / (kTurns * shares), std::size_t{1}, kMostTogether);
+    std::vector<findings::PlannedStep> mine;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (i / together % shares == static_cast<std::size_t>(index - 1)) {
+            mine.push_back(std::move(all[i]));
         }
     }
     return mine;

@@ -30,7 +30,7 @@ package = str(SOURCE / "experiments/python/lensproof")
 sys.path.insert(0, package)
 os.environ["PYTHONPATH"] = package
 import cluster  # noqa: E402
-from killer import Killer  # noqa: E402
+from common import SWEEP, Killer  # noqa: E402
 
 SCENE = """
 [camera]
@@ -51,19 +51,6 @@ squares = [12, 9]
 square_mm = 110.0
 [pose]
 distance_mm = 2000.0
-"""
-
-
-# A hundred settings of a lens.
-SWEEP = """
-title = "Settings"
-[[sweeps]]
-name = "settings"
-lens = "tessar"
-f_number = { from = 2.8, to = 16.0, count = 10, spacing = "logarithmic" }
-focus_distance_mm = { from = 1000.0, to = 10000.0, count = 10 }
-field_deg = 10.0
-measure = ["spot_rms_um", "chief_ray_height_mm"]
 """
 
 

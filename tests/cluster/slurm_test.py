@@ -33,7 +33,7 @@ PACKAGE = str(SOURCE / "experiments/python/lensproof")
 os.environ.update(LENSPROOF_PROGRAM=str(PROGRAM), LENSPROOF_CACHE="off", LENSPROOF_HOME=str(SOURCE), PYTHONPATH=PACKAGE)
 sys.path.insert(0, PACKAGE)
 import cluster  # noqa: E402
-from killer import Killer  # noqa: E402
+from common import SWEEP, Killer  # noqa: E402
 
 CONFIGURATION = """
 ClusterName=lensproof
@@ -173,6 +173,19 @@ class Slurm(unittest.TestCase):
         self.assertEqual((self.folder / "picture.exr").read_bytes(), self.merged(self.parts()))
         self.assertEqual(list(self.folder.glob("*.checkpoint*")), [])
         self.assertEqual(len(list(self.folder.glob("picture.part-*.exr"))), SHARDS)
+
+    def test_a_sweep_is_shared_out_and_its_report_has_the_same_bytes_whoever_dies(self):
+        experiment = self.folder / "sweep.toml"
+        experiment.write_text(SWEEP)
+        steps = output("sbatch", "--parsable", "--requeue", "--array=1-10", "--wrap",
+                       "lensproof run sweep.toml -o sweep --shard $SLURM_ARRAY_TASK_ID/10 --threads 1").strip()
+        report = output("sbatch", "--parsable", f"--dependency=afterany:{steps}", "--wrap",
+                        "lensproof run sweep.toml -o sweep").strip()
+        output("scancel", f"{steps}_7")  # whatever it had done: the report's run does the rest
+        wait_for(lambda: not output("squeue", "-h", "-j", f"{steps},{report}").strip())
+        output(PROGRAM, "run", experiment, "-o", "alone", "--quiet")
+        for name in ("report.json", "report.html"):
+            self.assertEqual((self.folder / "sweep" / name).read_bytes(), (self.folder / "alone" / name).read_bytes())
 
     @unittest.skipUnless(importlib.util.find_spec("dask_jobqueue"), "dask-jobqueue (PyPI's) is not here")
     def test_dask_has_its_workers_from_slurm(self):

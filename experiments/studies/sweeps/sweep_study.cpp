@@ -7,7 +7,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <set>
+#include <utility>
 
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
@@ -162,13 +165,39 @@ SweepValue value_of(const Sweep& sweep, std::size_t i, SweptLens& lens, const fi
                       [&] { return lens.measure(sweep_setting(sweep.axes, i), sweep.quantities); });
 }
 
+/// Lenses that no step uses at the moment: one that is done next to another mostly wants it as that had it.
+class IdleLenses {
+  public:
+    SweptLens take() {
+        const std::scoped_lock lock(mutex_);
+        SweptLens lens;
+        if (!lenses_.empty()) {
+            lens = std::move(lenses_.back());
+            lenses_.pop_back();
+        }
+        return lens;
+    }
+
+    void give_back(SweptLens lens) {
+        const std::scoped_lock lock(mutex_);
+        lenses_.push_back(std::move(lens));
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<SweptLens> lenses_;
+};
+
 std::vector<findings::PlannedStep> steps_of(const Sweep& sweep) {
     std::vector<findings::PlannedStep> steps;
+    const auto lenses = std::make_shared<IdleLenses>();
     for (std::size_t i = 0; i < combinations(sweep.axes); ++i) {
         constexpr double kUsualSeconds = 0.05;
-        const auto carry_out = [&sweep, i](const findings::RunSettings& settings, const findings::RunProgress&) {
-            SweptLens lens;
+        const auto carry_out = [&sweep, lenses, i](const findings::RunSettings& settings,
+                                                   const findings::RunProgress&) {
+            SweptLens lens = lenses->take();
             value_of(sweep, i, lens, settings.steps);
+            lenses->give_back(std::move(lens));
         };
         steps.push_back({kSweepStep, combination_text(sweep, i), input_of(sweep, i), kUsualSeconds, carry_out});
     }

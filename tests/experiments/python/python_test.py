@@ -292,6 +292,28 @@ class Trace(InAFolder):
         for name, column in again.to_dict().items():
             np.testing.assert_array_equal(column[::-1], expected[name])
 
+    def test_memory_of_results_that_are_gone_serves_the_next_and_no_other(self):
+        rays = lensproof.Rays.of(*bundle(5000))
+        others = lensproof.Rays.of(*bundle(5000, seed=2))
+        expected = self.lens.trace(rays).y_mm.copy()
+        place = self.lens.trace(rays).y_mm.__array_interface__["data"][0]  # gone with this line
+        looked_at = {"a column": self.lens.trace(rays).y_mm}
+        self.assertEqual(looked_at["a column"].__array_interface__["data"][0], place)
+        looked_at["a part of one"] = self.lens.trace(rays).y_mm[2:][::2]
+        looked_at["another library's"] = np.from_dlpack(self.lens.trace(rays).y_mm)
+        looked_at["bytes"] = np.frombuffer(memoryview(self.lens.trace(rays).y_mm))
+        for _ in range(3):
+            self.lens.trace(others)
+        for what, column in looked_at.items():
+            np.testing.assert_array_equal(column, expected[2:][::2] if what == "a part of one" else expected, what)
+        kept = self.lens.trace(rays)
+        memory = kept.y_mm
+        del kept
+        status = self.lens.trace(others).status  # whatever column is left of it holds all
+        self.lens.trace(rays)
+        np.testing.assert_array_equal(status, self.lens.trace(others).status)
+        np.testing.assert_array_equal(memory, expected)
+
     def test_light_runs_the_same_way_back(self):
         # Fermat: what left comes back along itself.
         heights = np.linspace(-10, 10, 41)

@@ -1,4 +1,4 @@
-"""What befalls a test's workers."""
+"""What the tests of many machines share: work, and what befalls its workers."""
 import os
 import random
 import signal
@@ -7,6 +7,19 @@ import threading
 
 def kill_process(client, worker):
     os.kill(client.run(os.getpid, workers=[worker])[worker], signal.SIGKILL)
+
+
+# A hundred settings of a lens.
+SWEEP = """
+title = "Settings"
+[[sweeps]]
+name = "settings"
+lens = "tessar"
+f_number = { from = 2.8, to = 16.0, count = 10, spacing = "logarithmic" }
+focus_distance_mm = { from = 1000.0, to = 10000.0, count = 10 }
+field_deg = 10.0
+measure = ["spot_rms_um", "chief_ray_height_mm"]
+"""
 
 
 class Killer:
