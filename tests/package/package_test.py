@@ -10,7 +10,9 @@ import csv
 import io
 import os
 import pathlib
+import pty
 import re
+import select
 import shutil
 import subprocess
 import sys
@@ -101,12 +103,41 @@ class Package(unittest.TestCase):
         self.assertEqual(self.completions("measure", "my"), ["my lens.toml"])
         self.assertEqual(self.completions("analyze", "--plots", "mov"), ["moved there"])
 
+    def pressed(self, *lines):
+        """What a person's zsh makes of each line, typed into its terminal and followed by a tab."""
+        functions = self.place / "share/zsh/vendor-completions"
+        process, terminal = pty.fork()
+        if process == 0:
+            os.chdir(self.folder)
+            os.execvpe("zsh", ["zsh", "-f", "-i"], ENVIRONMENT | {"TERM": "dumb", "LC_ALL": "C.UTF-8"})
+        os.write(terminal, f'fpath=("{functions}" $fpath); autoload -Uz compinit; compinit -u -D; setopt no_beep; '
+                 'tell() { print -r -- "<$BUFFER>"; BUFFER=; }; zle -N tell; bindkey "^G" tell; PS1="now""> "\n'.encode())
+        told = ""
+
+        def read_until(enough):
+            nonlocal told
+            while not enough():
+                self.assertTrue(select.select([terminal], [], [], 60)[0], told)
+                told += os.read(terminal, 4096).decode(errors="replace")
+
+        read_until(lambda: "now> " in told)
+        told = ""
+        for count, line in enumerate(lines, 1):
+            os.write(terminal, f"{line}\t\a".encode())
+            read_until(lambda: len(re.findall(r"<(.*?)>\r", told)) == count)
+        os.close(terminal)
+        os.waitpid(process, 0)
+        return [line.rstrip() for line in re.findall(r"<(.*?)>\r", told)]
+
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not here")
-    def test_zsh_reads_its_completions(self):
-        folder = self.place / "share/zsh/vendor-completions"
-        output("zsh", "-f", "-c", f'fpath=("{folder}" $fpath); autoload -Uz compinit; compinit -u -D; '
-               'autoload +X _lensproof; [[ $_comps[lensproof] == _lensproof ]]')
-        output("zsh", "-n", folder / "_lensproof")
+    def test_zsh_completes_commands_options_choices_lenses_and_files(self):
+        (self.folder / "my other lens.toml").touch()
+        self.assertEqual(
+            self.pressed("lensproof ana", "lensproof analyze --f-n", "lensproof trace --precision e",
+                         "lensproof analyze tessar-j", "lensproof check my\\ o", "lensproof measure my\\ o"),
+            ["lensproof analyze", "lensproof analyze --f-number", "lensproof trace --precision extended",
+             "lensproof analyze tessar-jena-50", "lensproof check my\\ other\\ lens.toml",
+             "lensproof measure my\\ other\\ lens.toml"])
 
     def test_another_program_traces_the_same_ray(self):
         build = self.folder / "uses_engine"
