@@ -1,4 +1,6 @@
 """Small drawings of results. Each takes Matplotlib's axes, or makes some, and returns them."""
+import itertools
+
 import numpy as np
 
 
@@ -108,16 +110,15 @@ def plot_plan(plan, axes=None):
 
 
 def plot_tradeoff(tradeoff, axes=None):
-    axes = _axes(axes, size=(6.0, 4.0))
-    for rung in tradeoff.rungs:
-        point = (rung.cost.seconds, rung.error.ciede2000_mean)
-        axes.plot(*point, "o", color="tab:blue" if rung.pareto else "lightgrey")
-        axes.annotate(" " + rung.model, point, fontsize="small")
+    axes = _axes(axes, size=(7.0, 4.0))
+    for rung, marker in zip(tradeoff.rungs, itertools.cycle("osD^v<>pPX*h")):
+        axes.plot(rung.cost.seconds, rung.error.ciede2000_mean, marker, label=rung.model,
+                  markerfacecolor=None if rung.pareto else "none")
     front = sorted((rung.cost.seconds, rung.error.ciede2000_mean) for rung in tradeoff.rungs if rung.pareto)
-    axes.plot(*zip(*front), color="tab:blue", linewidth=0.8)
+    axes.plot(*zip(*front), color="grey", linewidth=0.8, zorder=0)
     axes.set_xscale("log")
-    axes.margins(x=0.2)
-    _label(axes, "seconds of one core", "colour error (mean CIEDE2000)", f"reference: {tradeoff.reference}")
+    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
+    _label(axes, "seconds of one core", "colour error (mean CIEDE2000)", f"reference: {tradeoff.reference}; filled: on the front")
     return axes
 
 
