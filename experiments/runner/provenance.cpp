@@ -27,6 +27,13 @@ std::string first_line(const fs::path& file) {
     return line;
 }
 
+/// Where git keeps what is this checkout's own: in `place`, or where that, of a worktree, says.
+fs::path git_folder(const fs::path& place) {
+    const std::string prefix = "gitdir: ";
+    const std::string line = fs::is_regular_file(place) ? first_line(place) : "";
+    return line.starts_with(prefix) ? place.parent_path() / line.substr(prefix.size()) : place;
+}
+
 /// The commit that `reference` ("refs/heads/main") names in .git/packed-refs.
 std::string packed_reference(const fs::path& git, const std::string& reference) {
     if (!fs::exists(git / "packed-refs")) {
@@ -63,7 +70,7 @@ std::string sha256(const fs::path& file) {
 }
 
 std::string source_commit() {
-    const fs::path git = data_root() / ".git";
+    const fs::path git = git_folder(data_root() / ".git");
     if (!fs::exists(git / "HEAD")) {
         return fs::exists(data_root() / "commit") ? first_line(data_root() / "commit") : "unknown";
     }
@@ -73,7 +80,8 @@ std::string source_commit() {
         return head;
     }
     const std::string reference = head.substr(prefix.size());
-    return fs::exists(git / reference) ? first_line(git / reference) : packed_reference(git, reference);
+    const fs::path shared = fs::exists(git / "commondir") ? git / first_line(git / "commondir") : git;
+    return fs::exists(shared / reference) ? first_line(shared / reference) : packed_reference(shared, reference);
 }
 
 std::string portable_path(const fs::path& file) {

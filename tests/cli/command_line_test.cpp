@@ -56,6 +56,23 @@ TEST(Version, SaysCommitAndLibraries) {
         << version.out;
 }
 
+// Of a checkout, and of a worktree beside it, which keeps its own files in the checkout's.
+TEST(Version, KnowsACheckoutsCommitAndAWorktrees) {
+    const Workplace place;
+    const std::string first(40, '1');
+    const std::string second(40, '2');
+    place.file("main/.git/HEAD", "ref: refs/heads/main\n");
+    place.file("main/.git/packed-refs", "# pack-refs with: peeled\n" + first + " refs/heads/main\n");
+    place.file("main/.git/refs/heads/side", second + "\n");
+    place.file("main/.git/worktrees/side/HEAD", "ref: refs/heads/side\n");
+    place.file("main/.git/worktrees/side/commondir", "../..\n");
+    place.file("side/.git", "gitdir: " + (place.path() / "main/.git/worktrees/side").string() + "\n");
+    for (const auto& [folder, commit] : std::map<std::string, std::string>{{"main", first}, {"side", second}}) {
+        const Variable home("LENSPROOF_HOME", (place.path() / folder).string());
+        EXPECT_TRUE(says(place.run({"--version"}).out, "\ncommit " + commit + "\n")) << folder;
+    }
+}
+
 TEST(Lists, NameWhatShipsWithItsSource) {
     const Workplace place;
     const Json lenses = place.json({"lenses"})["lenses"];

@@ -16,23 +16,6 @@ namespace lensproof::failing_writes_test {
 
 namespace fs = std::filesystem;
 
-/// A variable of the environment, for a while.
-class Variable {
-  public:
-    Variable(const char* name, const std::string& value) : name_(name) {
-        const char* before = std::getenv(name);
-        before_ = before != nullptr ? std::optional<std::string>(before) : std::nullopt;
-        ::setenv(name, value.c_str(), 1);
-    }
-    ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
-    Variable(const Variable&) = delete;
-    Variable& operator=(const Variable&) = delete;
-
-  private:
-    const char* name_;
-    std::optional<std::string> before_;
-};
-
 /// The largest file that this process and its children may write, for a while.
 class FileLimit {
   public:

@@ -1,7 +1,9 @@
 // tests/cli/program.h — runs the program `lensproof` and keeps what it said.
 #pragma once
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +44,23 @@ class RunningProgram {
     int child_ = -1;
     bool has_ended_ = false;
     int status_ = 0;  // as waitpid gives it
+};
+
+/// A variable of the environment, for a while.
+class Variable {
+  public:
+    Variable(const char* name, const std::string& value) : name_(name) {
+        const char* before = std::getenv(name);
+        before_ = before != nullptr ? std::optional<std::string>(before) : std::nullopt;
+        ::setenv(name, value.c_str(), 1);
+    }
+    ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+  private:
+    const char* name_;
+    std::optional<std::string> before_;
 };
 
 /// A folder of its own for a test; gone with all that is in it at the end of its life.
