@@ -58,9 +58,8 @@ class Cluster(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="lensproof-cluster-")))
-        cls.local = cls.enterClassContext(distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50,
-            local_directory=str(cls.folder / "workers")))
+        cls.local = cls.enterClassContext(cluster.local_cluster(
+            n_workers=2, silence_logs=50, local_directory=str(cls.folder / "workers")))
         cls.client = cls.enterClassContext(distributed.Client(cls.local))
         (cls.folder / "scene.toml").write_text(SCENE)
 

@@ -89,8 +89,8 @@ def main():
     experiment.write_text(common.SWEEP.replace("field_deg = 10.0", FIELDS).replace("measure = [", 'measure = ["mtf_tangential", '))
     scene = given.source / "experiments/scenes/tessar_checkerboard.toml"
     try:
-        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50,
-                                      local_directory=str(folder / "workers")) as local, distributed.Client(local) as client:
+        with cluster.local_cluster(n_workers=2, silence_logs=50,
+                                   local_directory=str(folder / "workers")) as local, distributed.Client(local) as client:
             killer = common.Killer(client, given.shards)
             measured("render", 2, notes, killer, lambda: cluster.render(
                 scene, folder / "picture.exr", client, given.shards, ["--spp", str(given.spp)], progress=killer))

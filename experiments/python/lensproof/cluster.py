@@ -14,6 +14,7 @@ The same from a shell: `python3 -m lensproof.cluster render scene.toml -o pictur
 from __future__ import annotations
 
 import argparse
+import contextlib
 import dataclasses
 import hashlib
 import json
@@ -30,6 +31,9 @@ from collections.abc import Callable, Iterable, Sequence
 
 UNUSABLE_INPUT = 2  # an exit status: another try comes to the same
 SECONDS_OF_A_SHARD = 5.0  # of an experiment's steps, about
+
+CALM = {"distributed.worker.profile.interval": "10s", "distributed.admin.tick.interval": "1s"}
+"""For Dask's processes, whose tasks here take seconds: each looks at what it does a hundred times a second otherwise."""
 
 
 class TaskFailed(Exception):
@@ -107,6 +111,15 @@ def show_progress(done: int, total: int, seconds_left: float) -> None:
     if sys.stderr.isatty():
         left = f"{seconds_left:.0f} s left" if math.isfinite(seconds_left) else ""
         print(f"\r{done} of {total} tasks  {left}\033[K", end="\n" if done == total else "", file=sys.stderr, flush=True)
+
+
+def local_cluster(**settings):
+    """A distributed.LocalCluster of this machine, a worker of one thread for each core unless the settings say otherwise."""
+    import dask
+    from distributed import LocalCluster
+
+    dask.config.set(CALM)  # and not for a while: a worker that is started again asks, too
+    return LocalCluster(**{"threads_per_worker": 1, "dashboard_address": None, **settings})
 
 
 def run(goals: Sequence[Task], client, attempts: int = 10, progress: Progress = show_progress) -> None:
@@ -318,20 +331,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from distributed import Client
 
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    client = Client(known.scheduler) if known.scheduler else Client(threads_per_worker=1)
     try:
-        if known.command == "render":
-            render(known.scene, known.output, client, known.shards, others, known.attempts)
-        else:
-            experiments(known.files, known.output, client, known.attempts, shards=known.shards)
+        with contextlib.ExitStack() as stack:
+            client = stack.enter_context(Client(known.scheduler or stack.enter_context(local_cluster())))
+            if known.command == "render":
+                render(known.scene, known.output, client, known.shards, others, known.attempts)
+            else:
+                experiments(known.files, known.output, client, known.attempts, shards=known.shards)
     except KeyboardInterrupt:
         print("ended early; the same command goes on from there", file=sys.stderr)
         return 3
     except TaskFailed as error:
         print(error, file=sys.stderr)
         return UNUSABLE_INPUT if error.status == UNUSABLE_INPUT else 3
-    finally:
-        client.close()
     return 0
 
 
