@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""cluster_test.py PROGRAM SOURCE [--shards N] — renders and sweeps on workers that die.
+"""cluster_test.py PROGRAM SOURCE — renders and sweeps on workers that die.
 
 A `LocalCluster` of two workers; one task in ten has its worker killed under it. The picture has the bytes that the same
-shards have when nobody dies. Exits with 77, which counts as skipped, where Dask's `distributed` is not installed.
+shards have when nobody dies. With LENSPROOF_ALL_TRIALS=1 64 shards and a hundred settings, else fewer. Exits with 77,
+which counts as skipped, where Dask's `distributed` is not installed.
 """
 import json
 import os
@@ -22,7 +23,6 @@ except ImportError:
 
 sys.dont_write_bytecode = True
 PROGRAM, SOURCE = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
-SHARDS = int(sys.argv[4]) if sys.argv[3:4] == ["--shards"] else 16
 os.environ["LENSPROOF_PROGRAM"] = str(PROGRAM)
 os.environ["LENSPROOF_CACHE"] = "off"
 # The workers' processes import it too; the package around it needs what pip builds.
@@ -30,7 +30,10 @@ package = str(SOURCE / "experiments/python/lensproof")
 sys.path.insert(0, package)
 os.environ["PYTHONPATH"] = package
 import cluster  # noqa: E402
-from common import SWEEP, Killer  # noqa: E402
+from common import ALL_TRIALS, Killer, settings  # noqa: E402
+
+SHARDS = 64 if ALL_TRIALS else 16
+SIDE = 10 if ALL_TRIALS else 4
 
 SCENE = """
 [camera]
@@ -126,13 +129,13 @@ class Cluster(unittest.TestCase):
 
     def test_a_sweep_is_shared_out_and_its_report_has_the_same_bytes_whoever_dies(self):
         experiment = self.folder / "settings.toml"
-        experiment.write_text(SWEEP)
+        experiment.write_text(settings(SIDE))
         killer = Killer(self.client, 10)
         place, = cluster.experiments([experiment], self.folder / "shared", self.client, progress=killer, shards=10)
         self.assertGreater(killer.killed, 0)
         told = json.loads(subprocess.run([PROGRAM, "run", experiment, "-o", place, "--dry-run", "--json", "-"],
                                          capture_output=True, check=True).stdout)
-        self.assertEqual((told["steps"], told["kept"]), (100, 100))
+        self.assertEqual((told["steps"], told["kept"]), (SIDE * SIDE, SIDE * SIDE))
         alone = self.folder / "alone" / "settings"
         subprocess.run([PROGRAM, "run", experiment, "-o", alone, "--quiet"], check=True)
         for name in ("report.json", "report.html"):

@@ -5,18 +5,22 @@ import signal
 import threading
 
 
+ALL_TRIALS = "LENSPROOF_ALL_TRIALS" in os.environ  # sizes that studies have; every day's are smaller
+
+
 def kill_process(client, worker):
     os.kill(client.run(os.getpid, workers=[worker])[worker], signal.SIGKILL)
 
 
-# A hundred settings of a lens.
-SWEEP = """
+def settings(side):
+    """An experiment: a lens at `side` times as many settings."""
+    return f"""
 title = "Settings"
 [[sweeps]]
 name = "settings"
 lens = "tessar"
-f_number = { from = 2.8, to = 16.0, count = 10, spacing = "logarithmic" }
-focus_distance_mm = { from = 1000.0, to = 10000.0, count = 10 }
+f_number = {{ from = 2.8, to = 16.0, count = {side}, spacing = "logarithmic" }}
+focus_distance_mm = {{ from = 1000.0, to = 10000.0, count = {side} }}
 field_deg = 10.0
 measure = ["spot_rms_um", "chief_ray_height_mm"]
 """

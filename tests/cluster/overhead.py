@@ -2,16 +2,19 @@
 """overhead.py PROGRAM SOURCE [--shards N] [--spp N] — what workers that die cost, in processor time.
 
 A render in shards and an experiment of a hundred settings on a `LocalCluster` of two workers, of which every tenth task
-has its worker killed. What all processes took together, workers and scheduler included, over what the tries took that
-came to their end: what a killed process had done counts as lost, though its checkpoint or its steps were taken up.
+has its worker killed. What all processes took together, workers and scheduler included, over the sum of the parts: of
+each kind (a shard, a merge, the report) as many as there are times what one takes that nobody disturbed.
 By hand: minutes, and less is told of what takes seconds.
 """
 import argparse
+import collections
 import ctypes
+import json
 import os
 import pathlib
 import resource
 import shutil
+import statistics
 import sys
 import tempfile
 import time
@@ -27,7 +30,7 @@ sys.dont_write_bytecode = True
 PR_SET_CHILD_SUBREAPER = 36
 # Of each of the hundred settings, what takes a moment.
 FIELDS = """
-field_deg = { from = 0.0, to = 20.0, count = 11 }
+field_deg = { from = 0.0, to = 20.0, count = 3 }
 frequency_per_mm = 20.0
 """
 
@@ -50,15 +53,32 @@ def seconds_of_all():
 
 
 def performed(task):
-    """cluster.perform, which notes what the try took that came to its end."""
+    """cluster.perform, which notes that it began, and what it took where it came to its end."""
     import cluster
 
+    def note(seconds):
+        with open(os.environ["LENSPROOF_NOTES"], "a") as notes:
+            json.dump([task.arguments[0] + " --shard" * ("--shard" in task.arguments), task.result.name, seconds], notes)
+            notes.write("\n")
+
+    note(None)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     result = cluster.perform(task)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    with open(os.environ["LENSPROOF_NOTES"], "a") as notes:
-        notes.write(f"{after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}\n")
+    note(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     return result
+
+
+def sum_of_parts(notes):
+    """In seconds, and how many parts there are."""
+    tries, undisturbed = collections.Counter(), collections.defaultdict(list)
+    noted = [json.loads(line) for line in notes.read_text().splitlines()]
+    for kind, name, seconds in noted:
+        tries[kind, name] += seconds is None
+    for kind, name, seconds in noted:
+        if seconds is not None and tries[kind, name] == 1:
+            undisturbed[kind].append(seconds)
+    return sum(statistics.fmean(undisturbed[kind]) for kind, _ in tries), len(tries)
 
 
 def measured(what, cores, notes, killer, work):
@@ -66,10 +86,10 @@ def measured(what, cores, notes, killer, work):
     before, begin = seconds_of_all(), time.monotonic()
     work()
     wall, all_of_it = time.monotonic() - begin, seconds_of_all() - before
-    parts = [float(line) for line in notes.read_text().split()]
-    print(f"{what}: {len(parts)} tasks, {killer.killed} workers killed; parts {sum(parts):.1f} s of processor time, all "
-          f"{all_of_it:.1f} s: {all_of_it / sum(parts) - 1:.1%} more; {wall:.1f} s on {cores} workers, "
-          f"{wall * cores / sum(parts) - 1:.1%} more than the parts side by side", flush=True)
+    parts, count = sum_of_parts(notes)
+    print(f"{what}: {count} parts, {killer.killed} workers killed; parts {parts:.1f} s of processor time, all "
+          f"{all_of_it:.1f} s: {all_of_it / parts - 1:.1%} more; {wall:.1f} s on {cores} workers, "
+          f"{wall * cores / parts - 1:.1%} more than the parts side by side", flush=True)
 
 
 def main():
@@ -86,7 +106,7 @@ def main():
     cluster.perform = performed
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)  # whose parent was killed is ours, and counts
     experiment = folder / "settings.toml"
-    experiment.write_text(common.SWEEP.replace("field_deg = 10.0", FIELDS).replace("measure = [", 'measure = ["mtf_tangential", '))
+    experiment.write_text(common.settings(10).replace("field_deg = 10.0", FIELDS).replace("measure = [", 'measure = ["mtf_tangential", '))
     scene = given.source / "experiments/scenes/tessar_checkerboard.toml"
     try:
         with cluster.local_cluster(n_workers=2, silence_logs=50,
