@@ -54,8 +54,12 @@ std::vector<Integer> encode_srgb(const Image& image, const std::vector<int>& sou
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             for (const int source : sources) {
-                encoded.push_back(
-                    static_cast<Integer>(std::lround(kFullScale * linear_to_srgb(image.at(x, y, source)))));
+                const float value = image.at(x, y, source);
+                if constexpr (sizeof(Integer) == 1) {
+                    encoded.push_back(linear_to_srgb_byte(value));
+                } else {
+                    encoded.push_back(static_cast<Integer>(std::lround(kFullScale * linear_to_srgb(value))));
+                }
             }
         }
     }

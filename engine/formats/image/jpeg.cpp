@@ -122,11 +122,8 @@ int scan_count(std::string_view file) {
 }
 
 Image after_jpeg(const Image& image, int quality) {
-    std::vector<unsigned char> values;
-    values.reserve(image.pixels.size());
-    for (const float value : image.pixels) {
-        values.push_back(static_cast<unsigned char>(std::lround(255.0F * linear_to_srgb(value))));
-    }
+    std::vector<unsigned char> values(image.pixels.size());
+    std::ranges::transform(image.pixels, values.begin(), linear_to_srgb_byte);
     OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), OIIO::TypeDesc::UINT8);
     spec.attribute("compression", fmt::format("jpeg:{}", quality));
     std::vector<unsigned char> bytes;
@@ -146,9 +143,11 @@ Image after_jpeg(const Image& image, int quality) {
             fmt::format("a JPEG just made cannot be read: {}", input ? input->geterror() : OIIO::geterror()));
     }
     Image result = image;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        result.pixels[i] = srgb_to_linear(static_cast<float>(values[i]) / 255.0F);
+    std::array<float, 256> light{};
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        light[i] = srgb_to_linear(static_cast<float>(i) / 255.0F);
     }
+    std::ranges::transform(values, result.pixels.begin(), [&](unsigned char value) { return light[value]; });
     return result;
 }
 

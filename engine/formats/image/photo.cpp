@@ -151,6 +151,27 @@ std::vector<std::string> suspicions_of(const OIIO::ImageSpec& spec) {
     return signs;
 }
 
+/// Bytes by a table: a picture has millions, and 256 values.
+void linearise(std::vector<float>& values, const TransferCurve& curve, const OIIO::TypeDesc& stored_as) {
+    struct Known {
+        float value = -1.0F;
+        float light = 0.0F;
+    };
+    std::array<Known, 256> known;
+    const bool is_bytes = stored_as == OIIO::TypeDesc::UINT8;
+    for (float& value : values) {
+        if (!is_bytes || !(value >= 0.0F && value <= 1.0F)) {
+            value = to_linear(curve, value);
+            continue;
+        }
+        Known& own = known[static_cast<std::size_t>(255.0F * value + 0.5F)];
+        if (own.value != value) {
+            own = {value, to_linear(curve, value)};
+        }
+        value = own.light;
+    }
+}
+
 }  // namespace
 
 std::optional<double> CameraNotes::crop_factor() const {
@@ -171,9 +192,7 @@ Image read_photo(const std::filesystem::path& file, const std::optional<Transfer
     StoredPicture stored = read_stored(file, raw_hints());
     const TransferCurve curve = curve_of(stored.spec, stored.form == PictureForm::raw, assumed).curve;
     if (curve.kind != TransferKind::linear) {
-        for (float& value : stored.image.pixels) {
-            value = to_linear(curve, value);
-        }
+        linearise(stored.image.pixels, curve, stored.spec.format);
     }
     return std::move(stored.image);
 }

@@ -16,4 +16,7 @@ inline float linear_to_srgb(float linear) {
     return clipped <= 0.0031308F ? 12.92F * clipped : 1.055F * std::pow(clipped, 1.0F / 2.4F) - 0.055F;
 }
 
+/// The same as a byte, 255 at full scale, to the nearest: by a table, for millions of pixels.
+unsigned char linear_to_srgb_byte(float linear);
+
 }  // namespace lensproof::formats
