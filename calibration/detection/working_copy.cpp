@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibration/statistics/order_statistics.h"
+#include "engine/formats/image/srgb.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -12,8 +13,32 @@ namespace {
 constexpr double kWhitePercentile = 0.995;
 constexpr double kLeastStretch = 0.02;  // of white, in linear light: less than a chart's black and white ever differ by
 
-double srgb_encode(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+// The channels' mean in each pixel. What is not finite becomes 0.
+cv::Mat mean_plane(const formats::Image& image) {
+    cv::Mat mean(image.height, image.width, CV_32F);
+    const auto count = static_cast<std::size_t>(image.channel_count());
+    const float* value = image.pixels.data();
+    std::generate_n(mean.ptr<float>(), mean.total(), [&] {
+        float sum = 0.0F;
+        for (std::size_t c = 0; c < count; ++c, ++value) {
+            sum += std::isfinite(*value) ? *value : 0.0F;
+        }
+        return sum / static_cast<float>(count);
+    });
+    return mean;
+}
+
+// Values of pixels that are spread over the plane, so that columns and rows of what it shows do not matter: a million,
+// which say a percentile as well as all do.
+std::vector<float> spread_values(const cv::Mat& plane) {
+    const auto step = static_cast<int>(plane.total() / 1'000'000 + 1);
+    std::vector<float> values;
+    for (int y = 0; y < plane.rows; ++y) {
+        for (int x = 7 * y % step; x < plane.cols; x += step) {
+            values.push_back(plane.at<float>(y, x));
+        }
+    }
+    return values;
 }
 
 }  // namespace
@@ -31,11 +56,8 @@ cv::Mat channel_plane(const formats::Image& image, int channel) {
 }
 
 cv::Mat detector_copy(const formats::Image& image) {
-    cv::Mat mean = cv::Mat::zeros(image.height, image.width, CV_32F);
-    for (int channel = 0; channel < image.channel_count(); ++channel) {
-        mean += channel_plane(image, channel) / static_cast<double>(image.channel_count());
-    }
-    std::vector<float> values(mean.begin<float>(), mean.end<float>());
+    const cv::Mat mean = mean_plane(image);
+    std::vector<float> values = spread_values(mean);
     if (values.empty()) {
         return {};
     }
@@ -45,9 +67,8 @@ cv::Mat detector_copy(const formats::Image& image) {
         return {};
     }
     cv::Mat encoded(image.height, image.width, CV_8U);
-    std::transform(mean.begin<float>(), mean.end<float>(), encoded.begin<uchar>(), [white](float value) {
-        return static_cast<uchar>(std::lround(255.0 * srgb_encode(std::clamp(value / white, 0.0F, 1.0F))));
-    });
+    std::transform(mean.ptr<float>(), mean.ptr<float>() + mean.total(), encoded.ptr<uchar>(),
+                   [white](float value) { return formats::linear_to_srgb_byte(value / white); });
     return encoded;
 }
 
