@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
-#include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "calibration/self_test/blur_filter.h"
+#include "calibration/self_test/chart_map.h"
+#include "calibration/self_test/chart_point.h"
 #include "engine/base/infinity.h"
 #include "engine/base/parallel.h"
 #include "engine/formats/image/jpeg.h"
@@ -15,57 +16,11 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr int kSubpixels = 4;               // along a pixel's side: the grid that the blur acts on
+constexpr int kSubpixels = BlurFilter::kSubpixels;
 constexpr int kPlaces = 4;                  // looked at in each
-constexpr int kKnot_px = 2;                 // between exact points of the map to the chart
-constexpr int kBandRows = 64;               // of pixels, made at a time
-constexpr double kBlurReach = 4.0;          // standard deviations
+constexpr int kBand_px = 64;                // rows that are made at a time, and columns of them
+constexpr int kPatch_px = 16;               // sides of what is filtered where an edge is near
 constexpr double kFarthestRadius_px = 1e5;  // from the principal point
-constexpr int kBoardRounds = 6;             // each gains what slope and obliquity leave of the height: 0.1 and less
-
-// A polynomial says nothing beyond the points that it was fitted to: there the surface goes straight on.
-double height_mm(const BoardShape& board, const Vec2d& chart_mm) {
-    const auto held = [](double value, double middle, double half) {
-        return std::clamp(value, middle - half, middle + half);
-    };
-    const auto at = [&](double x, double y) { return board_height(board.frame, board.height_mm.data(), x, y); };
-    const BoardFrame& frame = board.frame;
-    const double x = held(chart_mm.x, frame.centre_mm.x, frame.half_size_mm.x);
-    const double y = held(chart_mm.y, frame.centre_mm.y, frame.half_size_mm.y);
-    double height = at(x, y);
-    constexpr double kStep = 1e-4;  // of half the frame: the slope to a relative 1e-4
-    if (x != chart_mm.x) {
-        const double step = kStep * frame.half_size_mm.x;
-        height += (at(x + step, y) - at(x - step, y)) / (2.0 * step) * (chart_mm.x - x);
-    }
-    if (y != chart_mm.y) {
-        const double step = kStep * frame.half_size_mm.y;
-        height += (at(x, y + step) - at(x, y - step)) / (2.0 * step) * (chart_mm.y - y);
-    }
-    return height;
-}
-
-// Where a direction meets the chart.
-std::optional<Vec2d> chart_point(const Vec3d& direction, const Pose& pose, const std::optional<BoardShape>& board) {
-    const Vec3d origin = pose.translation_mm;
-    const Vec3d x_axis = to_camera(pose, {1.0, 0.0}) - origin;
-    const Vec3d y_axis = to_camera(pose, {0.0, 1.0}) - origin;
-    const Vec3d normal = cross(x_axis, y_axis);
-    const double towards = dot(direction, normal);
-    const auto meets = [&](double height_mm) -> std::optional<Vec2d> {
-        const double distance = towards != 0.0 ? (dot(origin, normal) + height_mm) / towards : -1.0;
-        if (!(distance > 0.0)) {
-            return std::nullopt;
-        }
-        const Vec3d offset = distance * direction - origin;
-        return Vec2d{dot(offset, x_axis), dot(offset, y_axis)};
-    };
-    std::optional<Vec2d> place = meets(0.0);
-    for (int i = 0; board && place && i < kBoardRounds; ++i) {
-        place = meets(height_mm(*board, *place));
-    }
-    return place;
-}
 
 // A channel's light along the radius, looked up, because it is asked for every pixel: straight between 4096 places a
 // half-diagonal, which is off by 1e-8 of the second derivative.
@@ -132,122 +87,30 @@ Frame frame_of(const SimulatedCamera& camera) {
     return frame;
 }
 
-// Directions are mapped knot by knot; in a cell of four knots bilinearly.
-class ChartMap {
-  public:
-    ChartMap(const Frame& frame, const SimulatedChannel& channel, const Pose& pose, int first_x, int first_y,
-             int columns, int rows)
-        : first_x_(first_x), first_y_(first_y), columns_(columns / kKnot_px + 2), rows_(rows / kKnot_px + 2) {
-        knots_.reserve(static_cast<std::size_t>(columns_) * rows_);
-        const SimulatedCamera& camera = frame.camera;
-        for (int j = 0; j < rows_; ++j) {
-            for (int i = 0; i < columns_; ++i) {
-                const Vec2d pixel{first_x + kKnot_px * i - 0.5, first_y + kKnot_px * j - 0.5};
-                const auto direction =
-                    unproject(camera.model, without_shift(pixel, frame, channel.radial_shift_px), frame.angles);
-                knots_.push_back(direction ? chart_point(*direction, pose, camera.board) : std::nullopt);
-            }
-        }
+// The pixel of the camera model whose light a shift by `shift_px` brings to `pixel`.
+Vec2d without_shift(const Vec2d& pixel, const Frame& frame, const std::function<double(double)>& shift_px) {
+    const double x = pixel.x - frame.centre.x;
+    const double y = pixel.y - frame.centre.y;
+    const double radius = std::hypot(x, y);
+    double unshifted = radius;
+    double before = kNaN;
+    for (int i = 0; i < 8 && unshifted != before; ++i) {  // shifts change slowly, so each round gains two digits
+        before = unshifted;
+        unshifted = radius - shift_px(unshifted / frame.half_diagonal);
     }
+    const double scale = radius > 0.0 ? unshifted / radius : 1.0;
+    return {frame.centre.x + scale * x, frame.centre.y + scale * y};
+}
 
-    struct Cell {
-        const std::optional<Vec2d>*top, *bottom;  // two knots each
-        float even_tone;                          // of the whole cell; NaN where it has an edge, or one is near
-
-        [[nodiscard]] bool is_complete() const { return top[0] && top[1] && bottom[0] && bottom[1]; }
-        /// At (u, v) of the cell, each from 0 to 1.
-        [[nodiscard]] Vec2d at(double u, double v) const {
-            const auto mix = [&](double a, double b, double c, double d) {
-                return std::lerp(std::lerp(a, b, u), std::lerp(c, d, u), v);
-            };
-            return {mix(top[0]->x, top[1]->x, bottom[0]->x, bottom[1]->x),
-                    mix(top[0]->y, top[1]->y, bottom[0]->y, bottom[1]->y)};
-        }
+ChartMap map_of(const Frame& frame, const SimulatedChannel& channel, const Pose& pose, const scene::Chart& chart,
+                const cv::Rect& pixels) {
+    const auto exact = [&](const Vec2d& pixel) -> std::optional<Vec2d> {
+        const auto direction =
+            unproject(frame.camera.model, without_shift(pixel, frame, channel.radial_shift_px), frame.angles);
+        return direction ? chart_point(*direction, pose, frame.camera.board) : std::nullopt;
     };
-    /// The cell that pixel (x, y) lies in.
-    [[nodiscard]] Cell cell(int x, int y) const {
-        return cell_at((x - first_x_) / kKnot_px, (y - first_y_) / kKnot_px);
-    }
-
-    /// Marks the cells that no edge is near: three by three cells around are of one tone at all knots and middles,
-    /// which no part of the chart slips through: none is narrower than both diagonals of a cell.
-    void find_even_cells(const scene::Chart& chart) {
-        const double narrowest = scene::traits(chart).narrowest_mm;
-        cv::Mat even = cv::Mat::zeros(rows_, columns_, CV_8U);  // by a cell's top left knot
-        for (int j = 0; j + 1 < rows_; ++j) {
-            for (int i = 0; i + 1 < columns_; ++i) {
-                even.at<unsigned char>(j, i) = is_one_tone(cell_at(i, j), chart, narrowest) ? 1 : 0;
-            }
-        }
-        cv::erode(even, even, cv::Mat::ones(3, 3, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
-        for (int j = 0; j + 1 < rows_; ++j) {
-            for (int i = 0; i + 1 < columns_; ++i) {
-                if (even.at<unsigned char>(j, i) != 0) {
-                    const Vec2d& knot = *cell_at(i, j).top[0];
-                    even_tones_.at<float>(j, i) = static_cast<float>(scene::reflectance(chart, knot.x, knot.y));
-                }
-            }
-        }
-    }
-
-    /// The tone of all cells of the pixels from `first` to `last`, inclusive; none where they differ or have edges.
-    [[nodiscard]] std::optional<float> only_tone(const cv::Point& first, const cv::Point& last) const {
-        const float tone = cell(first.x, first.y).even_tone;
-        for (int y = first.y; y <= last.y; y += kKnot_px) {
-            for (int x = first.x; x <= last.x; x += kKnot_px) {
-                if (cell(x, y).even_tone != tone) {  // NaN differs from itself
-                    return std::nullopt;
-                }
-            }
-        }
-        return tone;
-    }
-
-  private:
-    [[nodiscard]] Cell cell_at(int i, int j) const {
-        const std::size_t first = static_cast<std::size_t>(j) * columns_ + i;
-        return {&knots_[first], &knots_[first + static_cast<std::size_t>(columns_)], even_tones_.at<float>(j, i)};
-    }
-
-    static bool is_one_tone(const Cell& cell, const scene::Chart& chart, double narrowest_mm) {
-        if (!cell.is_complete()) {
-            return false;
-        }
-        const double diagonal_mm = std::hypot(cell.bottom[1]->x - cell.top[0]->x, cell.bottom[1]->y - cell.top[0]->y) +
-                                   std::hypot(cell.bottom[0]->x - cell.top[1]->x, cell.bottom[0]->y - cell.top[1]->y);
-        if (!(diagonal_mm <= narrowest_mm)) {  // both diagonals: over five pixels
-            return false;
-        }
-        const double tone = scene::reflectance(chart, cell.top[0]->x, cell.top[0]->y);
-        const Vec2d middle = cell.at(0.5, 0.5);
-        return scene::reflectance(chart, cell.top[1]->x, cell.top[1]->y) == tone &&
-               scene::reflectance(chart, cell.bottom[0]->x, cell.bottom[0]->y) == tone &&
-               scene::reflectance(chart, cell.bottom[1]->x, cell.bottom[1]->y) == tone &&
-               scene::reflectance(chart, middle.x, middle.y) == tone;
-    }
-
-    // The pixel of the camera model whose light a shift by `shift_px` brings to `pixel`.
-    static Vec2d without_shift(const Vec2d& pixel, const Frame& frame, const std::function<double(double)>& shift_px) {
-        const double x = pixel.x - frame.centre.x;
-        const double y = pixel.y - frame.centre.y;
-        const double radius = std::hypot(x, y);
-        double unshifted = radius;
-        double before = kNaN;
-        for (int i = 0; i < 8 && unshifted != before; ++i) {  // shifts change slowly, so each round gains two digits
-            before = unshifted;
-            unshifted = radius - shift_px(unshifted / frame.half_diagonal);
-        }
-        const double scale = radius > 0.0 ? unshifted / radius : 1.0;
-        return {frame.centre.x + scale * x, frame.centre.y + scale * y};
-    }
-
-    int first_x_;
-    int first_y_;
-    int columns_;
-    int rows_;
-    std::vector<std::optional<Vec2d>> knots_;
-    cv::Mat even_tones_ = cv::Mat(rows_, columns_, CV_32F, cv::Scalar(kNaN));  // by a cell's top left knot
-};
+    return {exact, chart, pixels};
+}
 
 // A number in [0, 1) that looks random, of a pixel.
 double jitter(int x, int y, std::uint32_t salt) {
@@ -257,36 +120,27 @@ double jitter(int x, int y, std::uint32_t salt) {
     return static_cast<double>(h ^ (h >> 15)) / 4294967296.0;
 }
 
-void fill(cv::Mat& plane, int i, int j, float value) {
-    for (int b = 0; b < kSubpixels; ++b) {
-        std::fill_n(plane.ptr<float>(j + b) + i, kSubpixels, value);
-    }
-}
-
 // The chart's reflectance in each sub-pixel of pixel (x, y), by kSubpixels² values written into `plane` from (i, j).
 void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const scene::Chart& chart) {
-    const ChartMap::Cell cell = map.cell(x, y);
-    if (!cell.is_complete()) {
-        fill(plane, i, j, 0.0F);
-        return;
-    }
-    if (!std::isnan(cell.even_tone)) {
-        fill(plane, i, j, cell.even_tone);
+    const float even_tone = map.even_tone(x, y);
+    const ChartMap::Pixel pixel = std::isnan(even_tone) ? map.pixel(x, y) : ChartMap::Pixel{};
+    if (!std::isnan(even_tone) || !pixel.is_complete()) {
+        for (int b = 0; b < kSubpixels; ++b) {
+            std::fill_n(plane.ptr<float>(j + b) + i, kSubpixels, pixel.is_complete() ? even_tone : 0.0F);
+        }
         return;
     }
     constexpr std::array<int, kPlaces> kOrder = {2, 0, 3, 1};
-    constexpr int kStrata = kSubpixels * kPlaces;  // in a sub-pixel, along x and along y
+    constexpr double kStrata = kSubpixels * kPlaces;  // in a sub-pixel, along x and along y
     const double jitter_x = jitter(x, y, 0U);
     const double jitter_y = jitter(x, y, 0x27D4EB2FU);
-    const int in_cell_x = (x + kKnot_px * kBandRows) % kKnot_px;
-    const int in_cell_y = (y + kKnot_px * kBandRows) % kKnot_px;
     for (int b = 0; b < kSubpixels; ++b) {
         for (int a = 0; a < kSubpixels; ++a) {
             double sum = 0.0;
             for (int k = 0; k < kPlaces; ++k) {
                 const double u = (a + (k * kSubpixels + b + jitter_x) / kStrata) / kSubpixels;
                 const double v = (b + (kOrder[k] * kSubpixels + a + jitter_y) / kStrata) / kSubpixels;
-                const Vec2d place = cell.at((in_cell_x + u) / kKnot_px, (in_cell_y + v) / kKnot_px);
+                const Vec2d place = pixel.at(u, v);
                 sum += scene::reflectance(chart, place.x, place.y);
             }
             plane.at<float>(j + b, i + a) = static_cast<float>(sum / kPlaces);
@@ -294,103 +148,76 @@ void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const
     }
 }
 
-// The light in the middle of a pixel's cell, which over its 2 px is as good as even, over that of the chart's middle.
-double chart_light(const ChartMap::Cell& cell, const Vec2d& gradient_per_mm) {
-    if (!cell.is_complete()) {
-        return 1.0;
-    }
-    const Vec2d place = cell.at(0.5, 0.5);
-    return std::exp(gradient_per_mm.x * place.x + gradient_per_mm.y * place.y);
-}
-
-// By hand, because it is done for every pixel and a matrix's own product takes longer to begin than to do.
-void shade(cv::Mat& plane, int i, int j, double light) {
-    for (int b = 0; b < kSubpixels; ++b) {
-        float* row = plane.ptr<float>(j + b) + i;
-        for (int a = 0; a < kSubpixels; ++a) {
-            row[a] *= static_cast<float>(light);
-        }
-    }
-}
-
-// One channel of a part of the picture: what is to be painted, with the map of it and of `margin` pixels around.
-struct Part {
-    cv::Rect pixels;
-    int margin;
+// One channel of a band of the picture.
+struct Band {
+    int margin;  // pixels around what is painted that the blur may bring light from
     const ChartMap& map;
     const Frame& frame;
     const scene::Chart& chart;
+    const BlurFilter& filter;
 
-    [[nodiscard]] bool is_uneven() const {
-        const Vec2d& gradient = frame.camera.light_gradient_per_mm;
-        return gradient.x != 0.0 || gradient.y != 0.0;
+    [[nodiscard]] cv::Rect with_margin(const cv::Rect& pixels) const {
+        return {pixels.x - margin, pixels.y - margin, pixels.width + 2 * margin, pixels.height + 2 * margin};
     }
 };
 
-// What each sub-pixel along a line, from the first that the blur reaches, gives to a pixel: the blur's Gaussian, and
-// the mean over the pixel's own.
-std::vector<float> blur_and_box(double blur_px) {
-    const double sigma = blur_px * kSubpixels;
-    const int reach = static_cast<int>(std::ceil(kBlurReach * sigma));
-    const cv::Mat gaussian =
-        blur_px > 0.0 ? cv::getGaussianKernel(2 * reach + 1, sigma, CV_64F) : cv::Mat::ones(1, 1, CV_64F);
-    std::vector<float> weights(gaussian.total() + kSubpixels - 1);
-    for (std::size_t i = 0; i < gaussian.total(); ++i) {
-        for (std::size_t j = 0; j < kSubpixels; ++j) {
-            weights[i + j] += static_cast<float>(gaussian.at<double>(static_cast<int>(i)) / kSubpixels);
+// The reflectance of all sub-pixels.
+cv::Mat fine_picture(const Band& band, const cv::Rect& pixels) {
+    cv::Mat fine(pixels.height * kSubpixels, pixels.width * kSubpixels, CV_32F);
+    for (int y = 0; y < pixels.height; ++y) {
+        for (int x = 0; x < pixels.width; ++x) {
+            look(fine, x * kSubpixels, y * kSubpixels, band.map, pixels.x + x, pixels.y + y, band.chart);
         }
     }
-    return weights;
+    return fine;
 }
 
-// The part's pixels from the sub-pixels of them and of the margin around: first down the columns, for all of a row at
-// once, then along what is left. Only what arrives in a pixel is summed, a sixth of what a blur of all sub-pixels sums.
-cv::Mat pixels_of(const cv::Mat& fine, const std::vector<float>& weights, const Part& part) {
-    const int count = static_cast<int>(weights.size());
-    const int before = part.margin * kSubpixels - (count - kSubpixels) / 2;  // sub-pixels that no pixel's sum reaches
-    std::vector<float> line(static_cast<std::size_t>(fine.cols));
-    cv::Mat pixels(part.pixels.height, part.pixels.width, CV_32F);
+// The light on the chart at a pixel, over that of the chart's middle. Far beyond the chart, where nobody knows it, it
+// stays within e² of that.
+double chart_light(const Band& band, int x, int y) {
+    const ChartMap::Pixel pixel = band.map.pixel(x, y);
+    const Vec2d place = pixel.is_complete() ? pixel.at(0.5, 0.5) : Vec2d{};
+    const Vec2d& gradient_per_mm = band.frame.camera.light_gradient_per_mm;
+    return std::exp(std::clamp(gradient_per_mm.x * place.x + gradient_per_mm.y * place.y, -2.0, 2.0));
+}
+
+// Light that changes over the chart, by as little over a patch that it is as good as bilinear there: of g a patch, off
+// by g²/8. Blur, too, is too short to know of it.
+void shade(cv::Mat pixels, const cv::Rect& where, const Band& band) {
+    if (band.frame.camera.light_gradient_per_mm == Vec2d{}) {
+        return;
+    }
+    const cv::Point last = where.br() - cv::Point(1, 1);
+    const double top[2] = {chart_light(band, where.x, where.y), chart_light(band, last.x, where.y)};
+    const double bottom[2] = {chart_light(band, where.x, last.y), chart_light(band, last.x, last.y)};
     for (int y = 0; y < pixels.rows; ++y) {
-        std::ranges::fill(line, 0.0F);
-        for (int k = 0; k < count; ++k) {
-            const float* row = fine.ptr<float>(before + y * kSubpixels + k);
-            for (std::size_t i = 0; i < line.size(); ++i) {
-                line[i] += weights[static_cast<std::size_t>(k)] * row[i];
-            }
-        }
-        const float* first = line.data() + before;
-        for (int x = 0; x < pixels.cols; ++x, first += kSubpixels) {
-            pixels.at<float>(y, x) = std::inner_product(weights.begin(), weights.end(), first, 0.0F);
-        }
-    }
-    return pixels;
-}
-
-// The reflectance of each pixel, by the light on the chart, blurred.
-cv::Mat blurred(const Part& part) {
-    const int columns = part.pixels.width + 2 * part.margin;
-    const int rows = part.pixels.height + 2 * part.margin;
-    cv::Mat fine(rows * kSubpixels, columns * kSubpixels, CV_32F);
-    for (int y = 0; y < rows; ++y) {
-        for (int x = 0; x < columns; ++x) {
-            const cv::Point at(x + part.pixels.x - part.margin, y + part.pixels.y - part.margin);
-            look(fine, x * kSubpixels, y * kSubpixels, part.map, at.x, at.y, part.chart);
-            if (part.is_uneven()) {
-                shade(fine, x * kSubpixels, y * kSubpixels,
-                      chart_light(part.map.cell(at.x, at.y), part.frame.camera.light_gradient_per_mm));
-            }
-        }
-    }
-    return pixels_of(fine, blur_and_box(part.frame.camera.blur_px), part);
-}
-
-// The same where no edge is near: blur changes nothing, nor does it the light, which is smooth.
-cv::Mat of_one_tone(const Part& part, float tone) {
-    cv::Mat pixels(part.pixels.height, part.pixels.width, CV_32F, cv::Scalar(tone));
-    for (int y = 0; part.is_uneven() && y < pixels.rows; ++y) {
+        const double v = static_cast<double>(y) / std::max(1, pixels.rows - 1);
+        const double left = top[0] + v * (bottom[0] - top[0]);
+        const double step = (top[1] + v * (bottom[1] - top[1]) - left) / std::max(1, pixels.cols - 1);
         for (int x = 0; x < pixels.cols; ++x) {
-            pixels.at<float>(y, x) *= static_cast<float>(chart_light(
-                part.map.cell(part.pixels.x + x, part.pixels.y + y), part.frame.camera.light_gradient_per_mm));
+            pixels.at<float>(y, x) *= static_cast<float>(left + x * step);
+        }
+    }
+}
+
+// The reflectance of each pixel, by the light on the chart, blurred: patch by patch, and patches without an edge, where
+// blur changes nothing, as one tone.
+cv::Mat painted(const Band& band, const cv::Rect& part) {
+    cv::Mat pixels(part.height, part.width, CV_32F);
+    cv::Mat fine;  // of the part and the margin around, once it is needed
+    for (int y = 0; y < part.height; y += kPatch_px) {
+        for (int x = 0; x < part.width; x += kPatch_px) {
+            const cv::Rect patch(x, y, std::min(kPatch_px, part.width - x), std::min(kPatch_px, part.height - y));
+            const cv::Rect where = patch + part.tl();
+            if (const auto tone = band.map.only_tone(band.with_margin(where))) {
+                pixels(patch).setTo(*tone);
+            } else {
+                if (fine.empty()) {
+                    fine = fine_picture(band, band.with_margin(part));
+                }
+                band.filter.apply(fine, kSubpixels * (patch.tl() + cv::Point(band.margin, band.margin)), pixels(patch));
+            }
+            shade(pixels(patch), where, band);
         }
     }
     return pixels;
@@ -400,20 +227,15 @@ cv::Mat of_one_tone(const Part& part, float tone) {
 void paint_band(formats::Image& image, int channel, int first, int last, const Frame& frame, const Pose& pose,
                 const scene::Chart& chart) {
     const SimulatedCamera& camera = frame.camera;
+    const BlurFilter filter(camera.blur_px);
     // Whole cells of knots, so that every pixel's cell begins at an even place.
-    const int margin = kKnot_px * (1 + static_cast<int>(std::ceil(kBlurReach * camera.blur_px / kKnot_px)));
-    ChartMap map(frame, camera.channels[channel], pose, -margin, first - margin, camera.width_px + 2 * margin,
-                 last - first + 2 * margin);
-    map.find_even_cells(chart);
-    for (int left = 0; left < camera.width_px; left += kBandRows) {
-        const Part part{.pixels = {left, first, std::min(kBandRows, camera.width_px - left), last - first},
-                        .margin = margin,
-                        .map = map,
-                        .frame = frame,
-                        .chart = chart};
-        const cv::Point reach(margin, margin);
-        const auto tone = map.only_tone(part.pixels.tl() - reach, part.pixels.br() - cv::Point(1, 1) + reach);
-        const cv::Mat pixels = tone ? of_one_tone(part, *tone) : blurred(part);
+    const int margin = ChartMap::kKnot_px * (1 + (filter.reach_px() + ChartMap::kKnot_px - 1) / ChartMap::kKnot_px);
+    const ChartMap map = map_of(frame, camera.channels[channel], pose, chart,
+                                {-margin, first - margin, camera.width_px + 2 * margin, last - first + 2 * margin});
+    const Band band{.margin = margin, .map = map, .frame = frame, .chart = chart, .filter = filter};
+    for (int left = 0; left < camera.width_px; left += kBand_px) {
+        const cv::Rect part(left, first, std::min(kBand_px, camera.width_px - left), last - first);
+        const cv::Mat pixels = painted(band, part);
         for (int y = 0; y < pixels.rows; ++y) {
             for (int x = 0; x < pixels.cols; ++x) {
                 image.at(left + x, first + y, channel) =
@@ -430,18 +252,39 @@ void copy_first_channel(formats::Image& image) {
     }
 }
 
+// Of mean 0 and variance 1, in pairs (Box and Muller 1958); std::normal_distribution differs between libraries.
+class NormalNumbers {
+  public:
+    explicit NormalNumbers(std::seed_seq& seed) : engine_(seed) {}
+
+    double operator()() {
+        if (is_left_) {
+            is_left_ = false;
+            return left_;
+        }
+        const auto uniform = [&] { return (static_cast<double>(engine_()) + 0.5) / 4294967296.0; };
+        const double radius = std::sqrt(-2.0 * std::log(uniform()));
+        const double angle = 2.0 * std::numbers::pi * uniform();
+        left_ = radius * std::sin(angle);
+        is_left_ = true;
+        return radius * std::cos(angle);
+    }
+
+  private:
+    std::mt19937 engine_;
+    double left_ = 0.0;
+    bool is_left_ = false;
+};
+
 void add_noise(formats::Image& image, int row, const SimulatedCamera& camera, std::uint32_t seed) {
     std::seed_seq sequence{seed, static_cast<std::uint32_t>(row)};
-    std::mt19937 engine(sequence);
-    const auto uniform = [&] { return (static_cast<double>(engine()) + 0.5) / 4294967296.0; };
+    NormalNumbers normal(sequence);
     for (int x = 0; x < image.width; ++x) {
         for (int c = 0; c < made_channels(camera); ++c) {
             float& value = image.at(x, row, c);
             const double variance =
                 camera.read_noise * camera.read_noise + camera.shot_noise * camera.shot_noise * value;
-            // Box and Muller 1958; std::normal_distribution differs between libraries.
-            const double normal = std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
-            value += static_cast<float>(std::sqrt(std::max(variance, 0.0)) * normal);
+            value += static_cast<float>(std::sqrt(std::max(variance, 0.0)) * normal());
         }
     }
 }
@@ -467,21 +310,15 @@ formats::Image with_noise_and_compression(formats::Image image, const SimulatedC
 
 }  // namespace
 
-std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, const Vec2d& pixel,
-                                 const std::optional<BoardShape>& board) {
-    const auto direction = unproject(model, pixel);
-    return direction ? chart_point(*direction, pose, board) : std::nullopt;
-}
-
 formats::Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const scene::Chart& chart,
                               std::uint32_t seed) {
     formats::Image image = empty_picture(camera);
     const Frame frame = frame_of(camera);
-    const int bands = (camera.height_px + kBandRows - 1) / kBandRows;
+    const int bands = (camera.height_px + kBand_px - 1) / kBand_px;
     const int channels = made_channels(camera);
     parallel_for(bands * channels, camera.threads, [&](int i) {
-        const int first = i / channels * kBandRows;
-        paint_band(image, i % channels, first, std::min(first + kBandRows, camera.height_px), frame, pose, chart);
+        const int first = i / channels * kBand_px;
+        paint_band(image, i % channels, first, std::min(first + kBand_px, camera.height_px), frame, pose, chart);
     });
     return with_noise_and_compression(std::move(image), camera, seed);
 }

@@ -9,7 +9,7 @@
 #include "calibration/geometry/camera_model.h"
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/geometry/planar_pose.h"
-#include "calibration/self_test/simulated_chart.h"
+#include "calibration/self_test/chart_point.h"
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart/chart.h"
 

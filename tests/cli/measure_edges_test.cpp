@@ -1,6 +1,7 @@
 // tests/cli/measure_edges_test.cpp — sharpness from pictures without a chart, and pictures each by itself.
 #include <gtest/gtest.h>
 
+#include "calibration/self_test/simulated_chart.h"
 #include "engine/formats/image/image.h"
 #include "tests/calibration/synthetic.h"
 #include "tests/cli/program.h"

@@ -3,6 +3,7 @@
 
 #include "calibration/detection/line_points.h"
 #include "calibration/profile/profile_line.h"
+#include "calibration/self_test/simulated_chart.h"
 #include "engine/scene/chart/aruco.h"
 #include "tests/calibration/shot.h"
 
