@@ -1,6 +1,20 @@
 #include <benchmark/benchmark.h>
 
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "calibration/detection/detect.h"
+#include "calibration/detection/line_points.h"
 #include "calibration/detection/refine.h"
+#include "calibration/detection/working_copy.h"
+#include "calibration/light/light_samples.h"
+#include "calibration/measure/measure.h"
+#include "calibration/measure/measure_sharpness.h"
+#include "calibration/self_test/self_test.h"
+#include "calibration/self_test/simulated_chart.h"
+#include "engine/base/angle.h"
+#include "engine/formats/image/jpeg.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/scene/chart/chart.h"
@@ -78,6 +92,120 @@ void time_refinement(benchmark::State& state, const scene::Chart& chart) {
                            benchmark::Counter::kIsRate);
 }
 
+// Where the time of a camera's photos goes: eight views of six megapixels, in colours, as a camera's JPEG has them. All
+// steps grow with the pixels but refinement and the fits.
+const scene::Chart kPhotographed{
+    .pattern = scene::Checkerboard{14, 9, 25.0}, .white_reflectance = 0.85, .black_reflectance = 0.05};
+
+calibration::SimulatedCamera camera_of_photos() {
+    const auto falling = [](double height) { return 1.0 - 0.35 * height * height; };
+    return {.model = calibration::BrownConrady{{3050.0, 1505.0, 992.0, -0.08, 0.03, 0.0, 3e-4, -2e-4}},
+            .width_px = 3000,
+            .height_px = 2000,
+            .channels = {{.name = "R",
+                          .radial_shift_px = [](double height) { return -0.5 * height * height; },
+                          .vignetting = falling},
+                         {.name = "G", .vignetting = falling},
+                         {.name = "B",
+                          .radial_shift_px = [](double height) { return 0.6 * height * height * height; },
+                          .vignetting = falling}},
+            .white = 0.7,
+            .blur_px = 0.8,
+            .read_noise = 0.002,
+            .shot_noise = 0.004,
+            .jpeg_quality = 93,
+            .threads = 1};
+}
+
+calibration::Pose pose_of_photo(int i) {
+    const double turn = 2.0 * kPi * i / 8.0;
+    return {{0.35 * std::cos(turn), 0.35 * std::sin(turn), 0.1 * i}, {10.0 * (i % 3 - 1), 8.0 * (i % 2), 440.0}};
+}
+
+const formats::Image& photo(int i) {
+    static std::array<std::optional<formats::Image>, 8> kept;
+    auto& image = kept[static_cast<std::size_t>(i)];
+    if (!image) {
+        image = simulate_chart(camera_of_photos(), pose_of_photo(i), kPhotographed, static_cast<std::uint32_t>(i));
+    }
+    return *image;
+}
+
+calibration::MeasureInput photos(bool with_sharpness) {
+    calibration::MeasureInput input;
+    input.name = "photos";
+    input.chart = kPhotographed;
+    input.with_sharpness = with_sharpness;
+    input.threads = 1;
+    for (int i = 0; i < 8; ++i) {
+        input.pictures.push_back(
+            {"photo" + std::to_string(i), calibration::PictureRole::chart, [i] { return photo(i); }});
+    }
+    return input;
+}
+
+/// `step` on the first photo, with its points where it asks for them.
+template <class Step>
+void time_step(benchmark::State& state, const Step& step) {
+    const formats::Image& image = photo(0);
+    const calibration::ChartPoints found = calibration::detect(image, kPhotographed).points;
+    const calibration::ChartPoints points = refine(image, 1, found, kPhotographed);
+    while (state.KeepRunning()) {
+        benchmark::DoNotOptimize(step(image, points));
+    }
+    state.counters["ns/pixel"] =
+        benchmark::Counter(1e-9 * static_cast<double>(state.iterations()) * image.width * image.height,
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void time_measuring(benchmark::State& state) {
+    const calibration::MeasureInput input = photos(true);
+    for (int i = 0; i < 8; ++i) {
+        benchmark::DoNotOptimize(&photo(i));
+    }
+    while (state.KeepRunning()) {
+        benchmark::DoNotOptimize(measure(input));
+    }
+}
+
+void time_self_test(benchmark::State& state) {
+    const calibration::MeasureInput input = photos(true);
+    const calibration::Profile profile = measure(input);
+    while (state.KeepRunning()) {
+        benchmark::DoNotOptimize(self_test(input, profile));
+    }
+}
+
+void register_photo_benchmarks() {
+    const auto add = [](const std::string& name, const auto& step) {
+        benchmark::RegisterBenchmark(("photos/6MP/" + name).c_str(), [step](benchmark::State& state) {
+            time_step(state, step);
+        })->Unit(benchmark::kMillisecond);
+    };
+    using calibration::ChartPoints;
+    using formats::Image;
+    add("jpeg", [](const Image& image, const ChartPoints&) { return formats::after_jpeg(image, 93); });
+    add("working_copy", [](const Image& image, const ChartPoints&) { return calibration::detector_copy(image); });
+    add("detect", [](const Image& image, const ChartPoints&) { return calibration::detect(image, kPhotographed); });
+    add("refine",
+        [](const Image& image, const ChartPoints& points) { return refine(image, 1, points, kPhotographed); });
+    add("lines",
+        [](const Image& image, const ChartPoints& points) { return line_points(image, 1, points, kPhotographed); });
+    add("light", [](const Image& image, const ChartPoints& points) {
+        return chart_white_samples(image, 1, points, kPhotographed);
+    });
+    add("edges", [](const Image& image, const ChartPoints& points) {
+        calibration::SharpnessObservations seen;
+        observe_chart_edges(seen, image, 1, "photo", points, kPhotographed);
+        return seen.edges.size();
+    });
+    add("simulate", [](const Image&, const ChartPoints&) {
+        return simulate_chart(camera_of_photos(), pose_of_photo(0), kPhotographed, 0);
+    });
+    benchmark::RegisterBenchmark("photos/8x6MP/measure", time_measuring)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("photos/8x6MP/self_test", time_self_test)->Unit(benchmark::kMillisecond);
+}
+
 }  // namespace
 
 void register_measure_benchmarks() {
@@ -94,6 +222,7 @@ void register_measure_benchmarks() {
             time_refinement(state, chart);
         })->Unit(benchmark::kMillisecond);
     }
+    register_photo_benchmarks();
 }
 
 }  // namespace lensproof
