@@ -18,7 +18,8 @@ namespace lensproof::formats {
 namespace {
 
 // In the order in which names are looked up.
-constexpr std::array kTables = {"schott", "schott-obsolete", "ohara", "hoya", "hikari", "cdgm", "materials", "daimon"};
+constexpr std::array kTables = {"schott", "schott-obsolete", "ohara",   "hoya",      "hikari",
+                                "cdgm",   "sumita",          "moulded", "materials", "daimon"};
 
 std::filesystem::path glass_folder() {
     return data_root() / "lenses" / "glass";

@@ -24,8 +24,9 @@ optics::Glass glass(const char* name) {
     return shipped().resolve(name).glass.value();
 }
 
-// Catalogues state n_d to 5 digits or more and V_d to 2: formulas typed in right reproduce them to 1e-5 and 0.01. The
-// rows that do not, and those that state nothing, have to say why in their note.
+// Catalogues state n_d to 5 digits or more and V_d to 2: formulas typed in right reproduce them to 1e-5 and 0.01. SUMITA
+// makes V_d of indices that are rounded to 5 digits, which leaves 0.1 at 54. The rows that do not, and those that state
+// nothing, have to say why in their note.
 TEST(Glass, FormulasReproduceTheStatedIndexAndAbbeNumber) {
     std::map<std::string, int> rows;
     int unstated = 0;
@@ -39,18 +40,19 @@ TEST(Glass, FormulasReproduceTheStatedIndexAndAbbeNumber) {
         }
         const double n_d = optics::refractive_index(row.formula, spectral::kLineD);
         const double V_d = optics::abbe_number(row.formula);
-        if (std::abs(n_d - *row.stated_n_d) > 1e-5 || std::abs(V_d - *row.stated_V_d) > 0.01) {
+        if (std::abs(n_d - *row.stated_n_d) > 1e-5 || std::abs(V_d - *row.stated_V_d) > (row.catalogue == "SUMITA" ? 0.1 : 0.01)) {
             ++excused;
             EXPECT_TRUE(says(row.note, "where its formula gives")) << row.name << ' ' << n_d << ' ' << V_d;
         }
         EXPECT_FALSE(row.source.empty()) << row.name;
         EXPECT_TRUE(optics::covers(row, spectral::kLineF) && optics::covers(row, spectral::kLineC)) << row.name;
     }
-    EXPECT_EQ(unstated, 12) << "crystals, plastics and films";
+    EXPECT_EQ(unstated, 13) << "crystals, plastics, films, and an index without a glass";
     EXPECT_EQ(excused, 2) << "HOYA's two MP/MC-FCD1-M20, which round V_d before the index";
     EXPECT_GE(rows["SCHOTT"], 350);
     EXPECT_GE(rows["OHARA"], 400);
     EXPECT_GE(rows["HOYA"], 400);
+    EXPECT_GE(rows["SUMITA"], 160);
 }
 
 // N-BK7's data sheet (SCHOTT, 2017) lists indices of the same melt at other lines, and its partial dispersion.
