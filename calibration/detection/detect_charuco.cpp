@@ -89,19 +89,23 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_of(const scene::CharucoBoard& board, s
     return cv::makePtr<cv::aruco::Dictionary>(bytes, board.cells, correctable);
 }
 
-std::vector<Marker> find_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary,
-                                 const std::vector<cv::Point2d>& centres) {
+struct SeenMarker {
+    int number;
+    std::vector<cv::Point2f> corners;
+};
+
+std::vector<SeenMarker> seen_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
     auto tuning = cv::makePtr<cv::aruco::DetectorParameters>();
     tuning->minMarkerPerimeterRate = 0.02;
     tuning->adaptiveThreshWinSizeMax = 53;
     std::vector<std::vector<cv::Point2f>> corners;
     std::vector<int> ids;
     cv::aruco::detectMarkers(picture, dictionary, corners, ids, tuning);
-    std::vector<Marker> markers;
+    std::vector<SeenMarker> markers;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         // A number seen twice says nothing.
         if (std::count(ids.begin(), ids.end(), ids[i]) == 1) {
-            markers.push_back({centres[static_cast<std::size_t>(ids[i])], corners[i]});
+            markers.push_back({ids[i], corners[i]});
         }
     }
     return markers;
@@ -153,9 +157,14 @@ double disagreement(const std::vector<Marker>& markers, double side_squares, con
 }
 
 /// The markers seen that agree with their neighbours: of 35 squares that show anything else, one passes for a marker.
-std::vector<Marker> agreeing_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary,
-                                     const std::vector<cv::Point2d>& centres, double side_squares) {
-    std::vector<Marker> markers = find_markers(picture, dictionary, centres);
+std::vector<Marker> agreeing(const std::vector<SeenMarker>& seen, const std::vector<cv::Point2d>& centres,
+                             double side_squares) {
+    std::vector<Marker> markers;
+    for (const SeenMarker& each : seen) {
+        if (static_cast<std::size_t>(each.number) < centres.size()) {
+            markers.push_back({centres[static_cast<std::size_t>(each.number)], each.corners});
+        }
+    }
     while (!markers.empty()) {
         std::vector<double> off;
         off.reserve(markers.size());
@@ -169,6 +178,11 @@ std::vector<Marker> agreeing_markers(const cv::Mat& picture, const cv::Ptr<cv::a
         markers.erase(markers.begin() + (worst - off.begin()));
     }
     return markers;
+}
+
+std::vector<Marker> agreeing_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary,
+                                     const std::vector<cv::Point2d>& centres, double side_squares) {
+    return agreeing(seen_markers(picture, dictionary), centres, side_squares);
 }
 
 /// The blur of a lens out of focus, partly undone: markers are read from cells a few pixels wide.
@@ -197,6 +211,39 @@ std::vector<Marker> best_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco
     return markers;
 }
 
+/// "none of the board's markers found", or that the markers lie as on a board of another count: numbers run row by row,
+/// so where they lie tells the columns, and the last one how many rows there are at least.
+std::string why_none(const cv::Mat& picture, const scene::CharucoBoard& board, double side_squares) {
+    constexpr std::size_t kFewest = 4;
+    constexpr int kMostColumns = 40;
+    const std::vector<SeenMarker> seen = seen_markers(picture, dictionary_of(board, board.markers.size()));
+    scene::CharucoBoard best = board;
+    std::size_t most = 0;
+    for (int columns = 2; columns <= kMostColumns && seen.size() >= kFewest; ++columns) {
+        scene::CharucoBoard other = board;
+        other.columns = columns;
+        other.rows = 1;
+        const int last = std::max_element(seen.begin(), seen.end(), [](const auto& a, const auto& b) {
+                             return a.number < b.number;
+                         })->number;
+        while (marker_centres(other).size() <= static_cast<std::size_t>(last)) {
+            ++other.rows;
+        }
+        const std::size_t count = agreeing(seen, marker_centres(other), side_squares).size();
+        if (count > most) {
+            most = count;
+            best = other;
+        }
+    }
+    if (most < kFewest || 2 * most < seen.size()) {
+        return "none of the board's markers found";
+    }
+    return std::to_string(most) + " markers found that lie as on a board of " + std::to_string(best.columns) +
+           " columns and " + std::to_string(best.rows) + " rows or more (squares = [" + std::to_string(best.columns) +
+           ", " + std::to_string(best.rows) + "]), not of squares = [" + std::to_string(board.columns) + ", " +
+           std::to_string(board.rows) + "]";
+}
+
 }  // namespace
 
 ChartSearch find_charuco(const cv::Mat& picture, const scene::CharucoBoard& board) {
@@ -208,7 +255,7 @@ ChartSearch find_charuco(const cv::Mat& picture, const scene::CharucoBoard& boar
         cv::Mat mirrored;
         cv::flip(picture, mirrored, 1);
         const bool is_mirrored = !agreeing_markers(mirrored, dictionary, centres, side_squares).empty();
-        return {.reason = is_mirrored ? "the board is seen mirrored" : "none of the board's markers found"};
+        return {.reason = is_mirrored ? "the board is seen mirrored" : why_none(picture, board, side_squares)};
     }
     ChartSearch result;
     for (int row = 1; row < board.rows; ++row) {

@@ -108,6 +108,17 @@ TEST(CalibrationCornerAccuracy, AMirroredCharucoBoardIsSaidToBeOne) {
     EXPECT_EQ(detect(taken.image, board).reason, "the board is seen mirrored");
 }
 
+// Markers are numbered row by row, so where they lie tells how many there are in a row.
+TEST(CalibrationCornerAccuracy, ACharucoBoardOfAnotherCountIsOffered) {
+    scene::Chart board = charuco_board();
+    const Taken taken = take(board, perspective_camera(), {.tilt_deg = 10.0});
+    auto& stated = std::get<scene::CharucoBoard>(board.pattern);
+    const std::string seen = "squares = [" + std::to_string(stated.columns) + ", " + std::to_string(stated.rows) + "]";
+    std::swap(stated.columns, stated.rows);
+    const std::string reason = detect(taken.image, board).reason;
+    EXPECT_NE(reason.find(seen + "), not of"), std::string::npos) << reason;
+}
+
 // White that is clipped grows at black's cost, but evenly on both sides of a corner.
 TEST(CalibrationCornerAccuracy, ClippedWhiteMovesNoCorner) {
     Taken taken = take(kBoard, perspective_camera(), {.tilt_deg = 30.0, .blur_px = 1.0});
