@@ -81,7 +81,8 @@ void check_blur(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
     if (beam.height <= 0.0) {
         return;
     }
-    const double blur = axial_blur(checked, beam.height) / std::abs(checked.focus->efl);
+    const AxialSpread spread = axial_spread(checked, beam.height);
+    const double blur = spread.at(spread.best_z()) / std::abs(checked.focus->efl);
     const optics::Projection projection = checked.prescription.projection;
     const bool is_aspheric = std::ranges::any_of(checked.prescription.surfaces, &optics::PrescribedSurface::is_asphere);
     const double bound = is_aspheric ? kAsphericBlur : kBlur;

@@ -109,6 +109,16 @@ bool CheckedLens::is_dummy(int i) const {
     return table.index[i] == index_before(i) && !row(i).is_thin_element();
 }
 
+bool CheckedLens::has_virtual_image() const {
+    constexpr double kSamePlace = 0.005;  // of the focal length, as a back focus may be off without a warning
+    if (!focus || !std::isfinite(focus->efl)) {
+        return false;
+    }
+    const double stated = headings.back() * row(size() - 1).thickness_mm;
+    const double image = headings.back() * focus->image_distance;
+    return stated < 0.0 && image < 0.0 && std::abs(stated - image) < kSamePlace * std::abs(focus->efl);
+}
+
 CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const optics::StatedData& claims,
                               const optics::GlassCatalogue& glasses, const CheckSettings& settings) {
     CheckedLens checked;

@@ -61,6 +61,9 @@ struct CheckedLens {
     }
     /// Whether light passes the surface unchanged: a stop's plane, or a dummy.
     [[nodiscard]] bool is_dummy(int i) const;
+    /// Whether the table means a diverging lens: it puts the image plane in front of the last surface, where the
+    /// virtual image lies.
+    [[nodiscard]] bool has_virtual_image() const;
     /// Behind the surface, or in front of the first: the index.
     [[nodiscard]] double index_before(int i) const { return i == 0 ? table.index_in_front : table.index[i - 1]; }
 };

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/infinity.h"
 #include "engine/check/checks.h"
 #include "engine/check/digits.h"
+#include "engine/check/rays.h"
 #include "engine/check/sag.h"
 
 namespace lensproof::check {
@@ -51,7 +53,13 @@ void check_power(const CheckedLens& checked, Findings& findings) {
         findings.push_back({"no-power", error, 0, "the lens has no power: it images nothing", focus.efl, 0.0, "mm"});
         return;
     }
-    if (focus.efl < 0.0) {
+    if (checked.has_virtual_image()) {
+        findings.push_back({"virtual-image", info, checked.size(),
+                            fmt::format("a diverging lens (focal length {:.4f} mm): its image is virtual, {:.4f} mm in "
+                                        "front of the last surface, where the table puts the image plane",
+                                        focus.efl, std::abs(focus.image_distance)),
+                            focus.image_distance, kNaN, "mm"});
+    } else if (focus.efl < 0.0) {
         findings.push_back(
             {"negative-power", error, 0,
              fmt::format("the focal length is {:.4f} mm: a diverging lens, which images nothing on a sensor",
@@ -111,6 +119,16 @@ void check_back_focus(const CheckedLens& checked, std::string_view what, const C
     }
 }
 
+/// Whether real axial rays are as sharp in a plane this far behind the last surface as in the paraxial image, or
+/// sharper: then it is where a designer puts the sensor, on the marginal rays' side of the paraxial focus.
+bool is_best_focus(const CheckedLens& checked, double last) {
+    if (!checked.traced || !checked.prescription.is_rotationally_symmetric()) {
+        return false;
+    }
+    const AxialSpread spread = axial_spread(checked, axial_beam(checked).height);
+    return spread.tt > 0.0 && spread.at(last) <= spread.at(checked.focus->image_distance);
+}
+
 /// Rules 19 and 20. The last thickness is a claim too: where the sensor stands.
 void check_focal_lengths(const CheckedLens& checked, Findings& findings) {
     const Focus& focus = *checked.focus;
@@ -127,8 +145,13 @@ void check_focal_lengths(const CheckedLens& checked, Findings& findings) {
     const double last = heading * checked.row(checked.size() - 1).thickness_mm;
     const bool repeats = claims.bfl_mm && std::abs(*claims.bfl_mm - last) < 1e-9;
     if (last > 0.0 && !repeats) {
+        const std::size_t count = findings.size();
         check_back_focus(checked, "the image's distance from the last surface (mm, last thickness)",
                          {heading * focus.image_distance, last, scale}, checked.size(), findings);
+        if (findings.size() > count && findings.back().code == "back-focus" && is_best_focus(checked, heading * last)) {
+            findings.back().severity = info;
+            findings.back().message += "; real rays of the axial beam are sharper there: a best focus";
+        }
     }
 }
 

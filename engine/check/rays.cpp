@@ -152,13 +152,14 @@ AxialBeam stop_limited_beam(const CheckedLens& checked) {
     return beam_through(checked, without_rims(checked, true));
 }
 
-double axial_blur(const CheckedLens& checked, double beam_height) {
-    // Transverse height y + t z in planes z behind the last vertex, weighed with the ring of the pupil that each ray
-    // stands for: Σ w (y + t z)² is least at z = −Σ w y t / Σ w t².
+double AxialSpread::at(double z) const {
+    return std::sqrt(std::max(0.0, yy + z * (2.0 * yt + z * tt)));
+}
+
+AxialSpread axial_spread(const CheckedLens& checked, double beam_height) {
     constexpr int kRays = 32;
-    std::vector<std::array<double, 3>> rays;
-    double yt = 0.0;
-    double tt = 0.0;
+    AxialSpread sums;
+    double weights = 0.0;
     for (int k = 0; k < kRays; ++k) {
         const double h = beam_height * (k + 0.5) / kRays;
         const RayFate fate = follow(*checked.traced, axial_ray(checked, h));
@@ -167,18 +168,13 @@ double axial_blur(const CheckedLens& checked, double beam_height) {
         }
         const double t = fate.ray.direction.y / fate.ray.direction.z;
         const double y = fate.ray.origin.y - t * (fate.ray.origin.z - checked.lens->last_vertex_z());
-        rays.push_back({h, y, t});
-        yt += h * y * t;
-        tt += h * t * t;
-    }
-    const double z = tt > 0.0 ? -yt / tt : 0.0;
-    double sum = 0.0;
-    double weights = 0.0;
-    for (const auto& [h, y, t] : rays) {
-        sum += h * (y + t * z) * (y + t * z);
+        sums.yy += h * y * y;
+        sums.yt += h * y * t;
+        sums.tt += h * t * t;
         weights += h;
     }
-    return weights > 0.0 ? std::sqrt(sum / weights) : 0.0;
+    const double mean = weights > 0.0 ? 1.0 / weights : 0.0;
+    return {mean * sums.yy, mean * sums.yt, mean * sums.tt};
 }
 
 }  // namespace lensproof::check

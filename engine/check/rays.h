@@ -48,8 +48,20 @@ AxialBeam axial_beam(const CheckedLens& checked);
 /// The beam that the stop alone would leave.
 AxialBeam stop_limited_beam(const CheckedLens& checked);
 
-/// The rms distance (mm) from the axis of the axial beam's rays in the plane where that is smallest; up to
-/// `beam_height` in the first vertex's plane.
-double axial_blur(const CheckedLens& checked, double beam_height);
+/// How far from the axis the axial beam's rays meet planes behind the lens: heights y + t z, z mm from the last vertex,
+/// each ray weighed with the ring of the pupil that it stands for.
+struct AxialSpread {
+    double yy = 0.0;  // mean of y²
+    double yt = 0.0;
+    double tt = 0.0;
+
+    /// The rms distance, mm.
+    [[nodiscard]] double at(double z) const;
+    /// Where that is smallest.
+    [[nodiscard]] double best_z() const { return tt > 0.0 ? -yt / tt : 0.0; }
+};
+
+/// Of the rays up to `beam_height` in the first vertex's plane.
+AxialSpread axial_spread(const CheckedLens& checked, double beam_height);
 
 }  // namespace lensproof::check

@@ -108,6 +108,9 @@ void check_extremes(const optics::PrescribedSurface& row, int surface, Findings&
 void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings) {
     const double thickness = checked.headings[i] * checked.row(i).thickness_mm;
     const bool is_last = i + 1 == checked.size();
+    if (thickness < -optics::kGapRounding && is_last && checked.has_virtual_image()) {
+        return;
+    }
     if (thickness < -optics::kGapRounding) {
         add(findings, "negative-thickness", error, i + 1,
             is_last ? fmt::format("the sensor stands {} mm in front of the last surface", -thickness)

@@ -100,14 +100,15 @@ void require_traceable(const Prescription& prescription) {
 }
 
 /// Light runs forwards, and back behind each mirror. Only a dummy, with one medium on both sides, may stand behind the
-/// surface that follows it, or in front of the one before it: there the step back is only in the table.
+/// surface that follows it, or in front of the one before it: there the step back is only in the table. The image plane
+/// may stand anywhere: a diverging lens's image is virtual.
 void require_forwards(const Prescription& prescription, const Lens& lens) {
     const std::vector<LensSurface>& surfaces = lens.surfaces;
     const auto is_dummy = [&](std::size_t i) {
         return i < surfaces.size() && !surfaces[i].is_mirror && !surfaces[i].is_thin_element() &&
                surfaces[i].medium.formula == lens.medium_before(i).formula;
     };
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < surfaces.size(); ++i) {
         const PrescribedSurface& row = prescription.surfaces[i];
         const double heading = lens.heading_behind(i);
         require(heading * row.thickness_mm >= -kGapRounding || is_dummy(i) || is_dummy(i + 1), row, "thickness_mm",

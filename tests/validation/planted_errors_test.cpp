@@ -395,7 +395,8 @@ Imaging imaging_of(const GoodLens& good, const optics::Prescription& prescriptio
     Imaging imaging{.focus = checked.focus, .blur = kNaN};
     if (checked.traced && checked.focus) {
         const double height = check::axial_beam(checked).height;
-        imaging.blur = height > 0.0 ? check::axial_blur(checked, height) : kNaN;
+        const check::AxialSpread spread = check::axial_spread(checked, height);
+        imaging.blur = height > 0.0 ? spread.at(spread.best_z()) : kNaN;
     }
     return imaging;
 }

@@ -229,4 +229,39 @@ TEST(OrderOfSurfaces, IsNoErrorWhereTheRimsAreEstimated) {
     EXPECT_TRUE(report.ok()) << said(report);
 }
 
+// A half ball with its flat side in front at f/3.3 has its marginal focus some 2 mm before the paraxial one at 20 mm
+// (third order: 4.5 y² / f). Between the two real rays are sharper: who puts the sensor there means it. Beyond the
+// paraxial focus they are not, as far off as it is.
+TEST(CheckerRays, ABestFocusIsNoWrongBackFocus) {
+    optics::Prescription lens = half_ball(3.0);
+    lens.surfaces[1].thickness_mm = 19.0;
+    const CheckReport within = checked(lens);
+    const optics::Finding* meant = find(within, "back-focus", 2);
+    ASSERT_NE(meant, nullptr) << said(within);
+    EXPECT_EQ(meant->severity, optics::Severity::info) << meant->message;
+    EXPECT_NEAR(meant->value, 5.0, 1e-9);
+    lens.surfaces[1].thickness_mm = 21.0;
+    const CheckReport beyond = checked(lens);
+    const optics::Finding* wrong = find(beyond, "back-focus", 2);
+    ASSERT_NE(wrong, nullptr) << said(beyond);
+    EXPECT_EQ(wrong->severity, optics::Severity::error) << wrong->message;
+}
+
+// A diverging lens of a catalogue: its file puts the image plane where the virtual image is. Elsewhere in front of the
+// lens it is a slip.
+TEST(CheckerRays, ADivergingLensMayHaveItsVirtualImage) {
+    optics::Prescription lens = half_ball();
+    lens.surfaces[1].radius_mm = 10.0;
+    lens.surfaces[1].thickness_mm = -20.0;
+    const CheckReport meant = checked(lens);
+    EXPECT_TRUE(meant.ok()) << said(meant);
+    const optics::Finding* image = find(meant, "virtual-image", 2);
+    ASSERT_NE(image, nullptr) << said(meant);
+    EXPECT_NEAR(image->value, -20.0, 1e-9);
+    lens.surfaces[1].thickness_mm = -15.0;
+    const CheckReport slip = checked(lens);
+    EXPECT_NE(find(slip, "negative-thickness", 2), nullptr) << said(slip);
+    EXPECT_NE(find(slip, "negative-power"), nullptr) << said(slip);
+}
+
 }  // namespace lensproof::check::checker_rays_test
