@@ -1,5 +1,6 @@
 #include "engine/analysis/distortion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,13 +18,19 @@ double paraxial_magnification(const optics::TraceLens<double>& lens, double obje
     return 1.0 / (distance * optics::trace_paraxial(lens, {1.0, 1.0 / distance}, 0, last).slope);
 }
 
+/// A grating turns the axis, differently for each colour: no projection counts from there.
+bool has_gratings(const optics::TraceLens<double>& lens) {
+    return std::ranges::any_of(lens.specials,
+                               [](const optics::SpecialSurface<double>& each) { return each.thin.linear != 0.0; });
+}
+
 }  // namespace
 
 std::optional<double> ideal_height(const optics::TraceLens<double>& lens, optics::Projection projection,
                                    const optics::FieldBundle& bundle) {
     const double field = bundle.chief.field_angle;
     const bool is_rectilinear = projection == optics::Projection::rectilinear;
-    if (is_rectilinear && !(std::abs(field) < 0.5 * std::numbers::pi)) {
+    if (has_gratings(lens) || (is_rectilinear && !(std::abs(field) < 0.5 * std::numbers::pi))) {
         return std::nullopt;
     }
     const optics::ParaxialData first_order = optics::paraxial_data(lens);

@@ -14,7 +14,8 @@ namespace lensproof::analysis {
 ///   - near object, other projections: r(θ) times −m (d + z_E), the distance from the paraxial entrance pupil to the
 ///     object's plane imaged. With the object drawn away this becomes f, and for tan θ it is the former but for the
 ///     pupil's aberration.
-/// Nothing for a rectilinear lens from 90° on, and where the paraxial image is at infinity.
+/// Nothing for a rectilinear lens from 90° on, where the paraxial image is at infinity, and behind gratings, which turn
+/// the axis.
 std::optional<double> ideal_height(const optics::TraceLens<double>& lens, optics::Projection projection,
                                    const optics::FieldBundle& bundle);
 

@@ -45,14 +45,15 @@ ChiefRay mirrored(ChiefRay ray) {
 
 ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm, Rims rims)
     : whole_(at_wavelength<double>(lens, wavelength_nm)), rims_(rims), is_symmetric_(lens.is_rotationally_symmetric) {
-    require_no_gratings(lens, "the field of view");
     const auto stop = whole_.surfaces.begin() + lens.stop_index();
     front_ = {.surfaces = {whole_.surfaces.begin(), stop}, .image_z = 0.0, .specials = whole_.specials};
+    stop_ = {.surfaces = {*stop}, .image_z = 0.0, .specials = whole_.specials};
     rear_ = {.surfaces = {stop + 1, whole_.surfaces.end()}, .image_z = whole_.image_z, .specials = whole_.specials};
     const LensSurface& surface = lens.surfaces[lens.stop_index()];
     stop_centre_ = {surface.vertex.x, surface.vertex.y, surface.vertex_z};
     stop_normal_ = surface.axes[2];
     stop_ratio_ = stop->reverse_ratio;
+    is_thin_stop_ = surface.is_thin_element();
     stop_heading_ = std::copysign(1.0, stop->index_after);
     largest_stop_angle_ = is_symmetric_ ? end_of_family() : 0.0;
     largest_field_ = find_largest_field();
@@ -93,14 +94,25 @@ double ChiefRays::find_largest_field() const {
     return bisected({0.0, kPi}, kHalvings, [&](double field) { return at_field(field).has_value(); }).inside;
 }
 
-std::optional<ChiefRay> ChiefRays::through_stop(const Vec3d& direction, Rims rims) const {
-    // Where the stop is a glass surface, the ray bends at its vertex.
+std::optional<Vec3d> ChiefRays::outwards_from_stop(const Vec3d& direction) const {
     const double cosine = dot(direction, stop_normal_);
-    const Refraction<double> outwards = refract(-1.0 * direction, -1.0 * stop_normal_, cosine, stop_ratio_);
-    if (!(cosine > 0.0) || !outwards.transmitted) {
+    if (!(cosine > 0.0)) {
         return std::nullopt;
     }
-    const auto front = trace_half<Direction::reverse>(front_, {stop_centre_, outwards.direction}, rims);
+    if (is_thin_stop_) {
+        const auto bent = trace<Direction::reverse, Rims::follow>(stop_, {stop_centre_, -1.0 * direction});
+        return gets_through(bent.status) ? std::optional(bent.ray.direction) : std::nullopt;
+    }
+    const Refraction<double> bent = refract(-1.0 * direction, -1.0 * stop_normal_, cosine, stop_ratio_);
+    return bent.transmitted ? std::optional(bent.direction) : std::nullopt;
+}
+
+std::optional<ChiefRay> ChiefRays::through_stop(const Vec3d& direction, Rims rims) const {
+    const std::optional<Vec3d> outwards = outwards_from_stop(direction);
+    if (!outwards) {
+        return std::nullopt;
+    }
+    const auto front = trace_half<Direction::reverse>(front_, {stop_centre_, *outwards}, rims);
     const auto rear = trace_half<Direction::forward>(rear_, {stop_centre_, direction}, rims);
     if (!arrives(front.status, rims) || !arrives(rear.status, rims) || !(rear.ray.direction.z > 0.0)) {
         return std::nullopt;

@@ -30,8 +30,7 @@ struct ChiefRay {
 /// no ray. The object keeps to the plane x = 0, the ray's place does not.
 class ChiefRays {
   public:
-    /// With Rims::follow the rays go on beyond the rims, as far as they meet every surface. Throws InputError for a
-    /// lens with a grating, which has no chief rays about one axis.
+    /// With Rims::follow the rays go on beyond the rims, as far as they meet every surface.
     ChiefRays(const Lens& lens, double wavelength_nm, Rims rims = Rims::clip);
 
     /// The chief ray that leaves the stop's centre at `stop_angle` from the axis in the plane x = 0, or nothing where a
@@ -52,6 +51,9 @@ class ChiefRays {
     [[nodiscard]] double largest_field() const { return largest_field_; }
 
   private:
+    /// Where a ray that leaves the stop's centre in this direction came in, run backwards: the ray bends at its vertex,
+    /// where the stop is a glass surface, an ideal lens or a grating.
+    [[nodiscard]] std::optional<Vec3d> outwards_from_stop(const Vec3d& direction) const;
     [[nodiscard]] std::optional<ChiefRay> through_stop(const Vec3d& direction, Rims rims) const;
     template <class Residual>
     [[nodiscard]] std::optional<ChiefRay> solve(const Residual& residual) const;
@@ -62,9 +64,11 @@ class ChiefRays {
 
     TraceLens<double> whole_;
     TraceLens<double> front_;  // the surfaces before the stop
+    TraceLens<double> stop_;   // it alone
     TraceLens<double> rear_;   // those behind it
     Rims rims_ = Rims::clip;
     bool is_symmetric_ = true;
+    bool is_thin_stop_ = false;
     Vec3d stop_centre_;
     Vec3d stop_normal_;          // towards the sensor
     double stop_ratio_ = 1.0;    // index behind the stop over that before it

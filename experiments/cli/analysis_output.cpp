@@ -77,6 +77,27 @@ bool has_odd_terms(const optics::Lens& lens) {
     return std::ranges::any_of(lens.surfaces, [](const auto& surface) { return surface.shape.odd_terms > 0; });
 }
 
+/// Those of the lens, what its gratings leave open, and where light does not come to its image plane.
+std::vector<optics::Finding> findings_of(const optics::Lens& lens) {
+    std::vector<optics::Finding> findings = lens.findings;
+    const double behind = lens.final_heading() * (lens.image_z - lens.last_vertex_z());
+    if (behind < -optics::kGapRounding) {
+        findings.push_back({"virtual-image", optics::Severity::warning, static_cast<int>(lens.surfaces.size()),
+                            fmt::format("the image plane lies {:.7g} mm in front of the last surface: rays are "
+                                        "prolonged backwards to it",
+                                        -behind)});
+    }
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        if (lens.surfaces[i].is_grating()) {
+            findings.push_back({"grating", optics::Severity::info, static_cast<int>(i) + 1,
+                                "a grating turns the axis, each colour's by another angle: first-order data leave that "
+                                "turn out, fields count from the axis in front of the lens, heights from the first "
+                                "surface's, and there are no Seidel sums and no distortion"});
+        }
+    }
+    return findings;
+}
+
 Json seidel_json(const optics::Lens& lens, const std::optional<analysis::SeidelSums<double>>& sums) {
     if (!sums) {
         return nullptr;
@@ -220,7 +241,7 @@ Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& s
               {"reference_wavelength_nm", settings.reference_wavelength_nm},
               {"object_distance_mm", settings.object_distance},
               {"projection", optics::projection_name(lens.projection)},
-              {"findings", findings_json(lens.findings)},
+              {"findings", findings_json(findings_of(lens))},
               {"paraxial", reference_json(lens, analysis)},
               {"seidel", seidel_json(lens, analysis.seidel)},
               {"fields", Json::list()},
@@ -238,7 +259,7 @@ Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& s
 std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
                           const analysis::LensAnalysis& analysis) {
     std::string text = lens.name + "\n";
-    text += findings_text(lens.findings);
+    text += findings_text(findings_of(lens));
     text += fmt::format(
         "At {:.7g} nm, object at {}:\n", settings.reference_wavelength_nm,
         std::isinf(settings.object_distance) ? "infinity" : fmt::format("{:.7g} mm", settings.object_distance));
@@ -251,9 +272,10 @@ std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSett
                             has_odd_terms(lens) ? ", without the odd aspheric terms" : "") +
                 seidel_text(*analysis.seidel);
     } else {
-        text += lens.has_kinoforms()
-                    ? "No Seidel sums: none are known of kinoforms\n"
-                    : fmt::format("No Seidel sums: paraxial rays have no field of {:.4g} deg\n", largest);
+        text +=
+            lens.has_kinoforms()
+                ? fmt::format("No Seidel sums: none are known of {}\n", lens.has_gratings() ? "gratings" : "kinoforms")
+                : fmt::format("No Seidel sums: paraxial rays have no field of {:.4g} deg\n", largest);
     }
     text += "Fields:\n" + fields_text(analysis.fields);
     return text;

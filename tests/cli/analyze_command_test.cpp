@@ -38,10 +38,29 @@ TEST(Analyze, TheJsonHasEveryKeyOfTheContract) {
                                 "spot_rms_um", "spot_centroid_mm", "wavefront_rms_waves", "lateral_colour_um"}) {
             EXPECT_TRUE(row.contains(key)) << key;
         }
+        EXPECT_EQ(row["distortion_plane"], "paraxial");
     }
     EXPECT_EQ(json["fields"][2]["field_deg"], 5.0);  // as it was given
     EXPECT_EQ(json["fields"][0]["status"], "ok");
     EXPECT_EQ(json["fields"][4]["status"], "clipped");  // 30.1° is beyond the field
+}
+
+// The plane that distortion is told in is the paraxial image's and stated so: a sensor 3 mm off changes no number of it.
+TEST(Analyze, DistortionIsThatOfALensInFocus) {
+    const std::vector<std::string> asked = {"tessar", "--fields", "0,0.01,12,20"};
+    std::vector<std::string> out_of_focus = asked;
+    out_of_focus.insert(out_of_focus.end(), {"--image-distance", "85"});
+    const Json focused = analysis(asked)["fields"];
+    const Json blurred = analysis(out_of_focus)["fields"];
+    ASSERT_EQ(focused.size(), blurred.size());
+    for (std::size_t i = 0; i < focused.size(); ++i) {
+        const double percent = blurred[i]["distortion_percent"].get<double>();
+        EXPECT_NEAR(percent, focused[i]["distortion_percent"].get<double>(), 1e-9);
+        EXPECT_NE(blurred[i]["spot_rms_um"], focused[i]["spot_rms_um"]);
+        if (blurred[i]["field_deg"].get<double>() < 0.1) {
+            EXPECT_NEAR(percent, 0.0, 1e-5);
+        }
+    }
 }
 
 // Asked for, the veiling glare index is there with its parts; a sensor that reflects adds to it, and says so alone

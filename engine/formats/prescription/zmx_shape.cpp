@@ -169,6 +169,11 @@ void read_zmx_shape(optics::PrescribedSurface& row, const ZmxSurface& surface, i
         read_binary(row, surface, number, unit_mm, remarks);
     } else if (surface.type == "QED_TYPE") {
         read_forbes(row, surface, number, unit_mm, remarks);
+    } else if (surface.type == "JONESMAT") {
+        remarks.add_once(fmt::format("{}", number), "polarisation-not-read", optics::Severity::warning, number,
+                         fmt::format("line {}, surface {} of the file: its Jones matrix, what it does to polarised "
+                                     "light, is left out; its plane stays",
+                                     surface.line, number));
     } else {
         surface_type_error(remarks, surface, number,
                            fmt::format("the type {} is not known; the surface is taken as a conic", surface.type));

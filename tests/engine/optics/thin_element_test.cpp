@@ -305,9 +305,8 @@ TEST(Kinoform, FocusesWhereItsPathsAreEqual) {
     EXPECT_NEAR(paraxial_data(at_wavelength<double>(lens, 450.0)).efl, kFocal * kWavelength_nm / 450.0, 1e-13 * kFocal);
 }
 
-TEST(Grating, HasNoFieldAboutOneAxis) {
+TEST(Grating, IsNothingForWhatKnowsRefractionAlone) {
     const Lens lens = lens_of({grating(600.0, 1.0, kInfinity, 10.0)});
-    EXPECT_TRUE(says(lensproof::complaint_about([&] { ChiefRays(lens, kWavelength_nm); }), "which a grating turns"));
     EXPECT_TRUE(says(lensproof::complaint_about([&] { require_refraction_alone(lens, "a ghost"); }), "gratings"));
 }
 
