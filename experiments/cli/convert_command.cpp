@@ -63,8 +63,8 @@ void add_convert_command(Program& program) {
     Command command = program.add_command("convert", "Write a prescription in another form");
     auto options = std::make_shared<ConvertOptions>();
     command.footer(
-        "Reads .toml, .zmx, .seq, .dat (pbrt), .json (Optiland), .fx (lensoptics) and .csv, writes .toml, .zmx, .dat "
-        "and .csv.\n"
+        "Reads .toml, .zmx, .zar, .seq, .dat (pbrt), .json (Optiland), .roa (rayoptics), .fx (lensoptics) and .csv, "
+        "writes .toml, .zmx, .dat and .csv.\n"
         "What the reader did not understand, and what the form of OUT cannot say, goes to standard error: as a warning "
         "where rays then go another way, else as an info.\n"
         "Example: lensproof convert patent.fx patent.toml");

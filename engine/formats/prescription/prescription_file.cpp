@@ -31,6 +31,7 @@ constexpr Form kForms[] = {
     {".seq", parse_seq, nullptr},
     {".dat", parse_pbrt_lens, to_pbrt_lens},
     {".json", parse_optiland, nullptr},
+    {".roa", parse_rayoptics, nullptr},
     {".fx", parse_fx, nullptr},
 };
 

@@ -10,7 +10,7 @@
 namespace lensproof::formats {
 
 /// Reads a prescription, the form told by the file's extension: the project's TOML form (lenses/README.md), plain CSV,
-/// Zemax .zmx, CODE V .seq, pbrt .dat, Optiland .json, lensoptics .fx.
+/// Zemax .zmx, CODE V .seq, pbrt .dat, Optiland .json, rayoptics .roa, lensoptics .fx.
 ///
 /// What the table states is taken as it is, physical or not; what the form says beyond that, and is not understood, is
 /// named in `remarks`. Throws InputError, naming file and line, for what is no prescription at all: no table, no number

@@ -42,6 +42,7 @@ optics::Prescription parse_zar(const std::string& bytes, const std::filesystem::
 optics::Prescription parse_seq(const std::string& text, const std::filesystem::path& file);
 optics::Prescription parse_pbrt_lens(const std::string& text, const std::filesystem::path& file);
 optics::Prescription parse_optiland(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_rayoptics(const std::string& text, const std::filesystem::path& file);
 optics::Prescription parse_fx(const std::string& text, const std::filesystem::path& file);
 
 /// A prescription in another form, and what that form cannot say.

@@ -123,7 +123,10 @@ def distinct(angles):
 
 def read_with_rayoptics(file):
     from rayoptics.codev import cmdproc
+    from rayoptics.gui import roafile
     from rayoptics.zemax import zmxread
+    if file.suffix.lower() == ".roa":
+        return roafile.open_roa(file)
     return (zmxread.read_lens_file if file.suffix.lower() == ".zmx" else cmdproc.read_lens)(file)[0]
 
 
@@ -300,7 +303,7 @@ def compute(package, path, file, scratch):
               "needs": sorted(beyond_centred) + (of_file(REFUSALS, path) or []), "computed": [], "without": {}}
     for program in PROGRAMS:
         misread = of_file(MISREAD, path, program)
-        if misread is None and program == "rayoptics" and file.suffix == ".json":
+        if misread is None and (program, file.suffix) in (("rayoptics", ".json"), ("optiland", ".roa")):
             misread = "reads no such file"
         if misread is None and beyond_centred & BEYOND_PARAXIAL:
             misread = "what the surface does to rays is beyond its paraxial trace"

@@ -1,4 +1,5 @@
-"""What a comparison needs to know about a sample, from its own records: Zemax's, CODE V's or Optiland's.
+"""What a comparison needs to know about a sample, from its own records: Zemax's, CODE V's, Optiland's or
+rayoptics'.
 
 A table is a dict: `surfaces` (the object first, the image last), each with its type, its glass as the file names it and
 whether it is the stop; the primary wavelength (nm), the unit (mm), the number of fields (None: not said). This is no reader of
@@ -103,9 +104,31 @@ def read_optiland(text):
             "wavelength_nm": round(1000 * primary["value"], 9)}
 
 
+RAYOPTICS_UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inches": 25.4}
+
+
+def read_rayoptics(text):
+    model = json.loads(text)["optical_model"]["attributes"]
+    sequence, spec = model["seq_model"]["attributes"], model["optical_spec"]["attributes"]
+    surfaces = []
+    for i, each in enumerate(sequence["ifcs"]):
+        own = each["attributes"]
+        medium = sequence["gaps"][i]["attributes"]["medium"] if i < len(sequence["gaps"]) else {"__instance_type__": [0, "Air"]}
+        element = (own.get("phase_element") or {"__instance_type__": [0, ""]})["__instance_type__"][1]
+        surfaces.append({"type": "DIF" if element == "DiffractiveElement" else "STANDARD",
+                         "glass": "MIRROR" if own["interact_mode"] == "reflect"
+                         else None if medium["__instance_type__"][1] == "Air" else medium["attributes"].get("gname", f"n{i}"),
+                         "stop": i == (sequence["stop_surface"] or 1)})
+    region = spec["spectral_region"]["attributes"]
+    return {"surfaces": surfaces,
+            "unit_mm": RAYOPTICS_UNITS[model["system_spec"]["attributes"]["_dimensions"].lower()],
+            "fields": len(spec["field_of_view"]["attributes"]["fields"]),
+            "wavelength_nm": region["wavelengths"][region["reference_wvl"]]}
+
+
 def read_table(file, text):
     form = file.suffix.lower()
-    return {".zmx": read_zemax, ".seq": read_code_v, ".json": read_optiland}[form](text)
+    return {".zmx": read_zemax, ".seq": read_code_v, ".json": read_optiland, ".roa": read_rayoptics}[form](text)
 
 
 def zemax_with_constants(text, gap_indices):
@@ -142,9 +165,18 @@ def optiland_with_constants(text, gap_indices):
     return json.dumps(content)
 
 
+def rayoptics_with_constants(text, gap_indices):
+    content = json.loads(text)
+    for gap, index in zip(content["optical_model"]["attributes"]["seq_model"]["attributes"]["gaps"], gap_indices):
+        if gap["attributes"]["medium"]["__instance_type__"][1] != "Air":
+            gap["attributes"]["medium"] = {"__instance_type__": ["opticalglass.opticalmedium", "ConstantIndex"],
+                                           "attributes": {"label": "n", "n": index}}
+    return json.dumps(content)
+
+
 def with_constants(file, text, gap_indices):
     """The file's text with the indices that a program took, one for each gap, in place of glasses that have no name
     by which another index could be given."""
     form = file.suffix.lower()
     return {".zmx": zemax_with_constants, ".seq": code_v_with_constants,
-            ".json": optiland_with_constants}[form](text, gap_indices)
+            ".json": optiland_with_constants, ".roa": rayoptics_with_constants}[form](text, gap_indices)

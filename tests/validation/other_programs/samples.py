@@ -1,4 +1,4 @@
-"""The lens files that other programs ship, fetched from the package index: Zemax's, CODE V's and Optiland's.
+"""The lens files that other programs ship, fetched from the package index: Zemax's, CODE V's, Optiland's, rayoptics'.
 
 They are other people's work and are never committed. Each archive is pinned by its SHA-256, so that what is compared
 is what first_order.json was computed from.
@@ -30,7 +30,7 @@ class Unavailable(Exception):
 
 def is_sample(path):
     folder, _, name = path.lower().rpartition("/")
-    return name.endswith((".zmx", ".seq")) or (name.endswith(".json") and folder.endswith("docs/samples"))
+    return name.endswith((".zmx", ".seq", ".roa")) or (name.endswith(".json") and folder.endswith("docs/samples"))
 
 
 def lens_files(archive):
@@ -70,7 +70,7 @@ def download(archive, folder):
 
 def place_of(archive, folder):
     """Where fetch() keeps what it took of an archive; the name says what, for folders of before held less."""
-    return folder / f"{archive['package']}-{archive['version']}-zmx-seq-json"
+    return folder / f"{archive['package']}-{archive['version']}-zmx-seq-json-roa"
 
 
 def fetch(folder, archives=ARCHIVES):
