@@ -141,8 +141,12 @@ void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings)
 void check_semi_diameter(const CheckedLens& checked, int i, Findings& findings) {
     const optics::PrescribedSurface& row = checked.row(i);
     if (!row.semi_diameter_mm && !row.rim_mm) {
-        add(findings, "semi-diameter-missing", info, i + 1,
-            "no semi-diameter is stated: marginal and chief ray set it");
+        const bool is_free_stop =
+            row.is_stop && checked.prescription.governing_aperture().kind == optics::ApertureKind::stop;
+        add(findings, "semi-diameter-missing", is_free_stop ? warning : info, i + 1,
+            is_free_stop ? "neither an aperture nor the stop's size is stated: what the other surfaces let pass of an "
+                           "axial beam sets it"
+                         : "no semi-diameter is stated: marginal and chief ray set it");
         return;
     }
     const double semi_diameter = checked.semi_diameters[i];

@@ -149,6 +149,25 @@ std::vector<double> real_heights(const Lens& open, const Prescription& prescript
     return heights;
 }
 
+/// How high the widest axial beam stands at the stop that all other surfaces' rims let pass.
+double widest_axial_height(const Lens& open, const Prescription& prescription, const TraceLens<double>& traced) {
+    double height = 0.0;
+    const std::optional<ChiefRay> axis = ChiefRays(open, prescription.reference_wavelength_nm()).at_field(0.0);
+    if (axis) {
+        const MeridionalBundle bundle = meridional_bundle(traced, *axis, prescription.object_distance_mm);
+        trace(traced, bundle.ray({0.0, bundle.upper}), [&](const SurfaceEvent<double>& event) {
+            height = event.surface == open.stop_index() ? std::abs(event.ray.origin.y) : height;
+        });
+    }
+    if (height == 0.0) {
+        throw InputError(
+            fmt::format("{}: neither an aperture nor the stop's size is stated, and the other surfaces "
+                        "let no axial beam pass that it could be found from",
+                        open.name));
+    }
+    return height;
+}
+
 }  // namespace
 
 void open_stop(Lens& lens, const Prescription& prescription) {
@@ -171,7 +190,9 @@ void estimate_rims(Lens& lens, const Prescription& prescription) {
     if (std::ranges::none_of(lens.surfaces, has_no_rim)) {
         return;
     }
-    if (has_no_rim(lens.surfaces[lens.stop_index()])) {
+    const int stop = lens.stop_index();
+    const bool is_stop_alone = std::ranges::count_if(lens.surfaces, has_no_rim) == 1;
+    if (has_no_rim(lens.surfaces[stop]) && !is_stop_alone) {
         throw InputError(
             fmt::format("{}: no semi-diameter is stated for some surfaces, and no f-number that they could "
                         "be found from; expected semi_diameter_mm, or stated.f_number",
@@ -191,6 +212,16 @@ void estimate_rims(Lens& lens, const Prescription& prescription) {
     if (open.image_z == open.last_vertex_z()) {  // the source does not say
         const double image = paraxial_image_distance(traced, prescription.object_distance_mm);
         open.image_z += std::isfinite(image) ? image : 0.0;
+    }
+    if (is_stop_alone && has_no_rim(lens.surfaces[stop])) {
+        const double opening = widest_axial_height(open, prescription, traced);
+        lens.surfaces[stop].semi_diameter = opening;
+        lens.findings.push_back(
+            {"stop-size", Severity::warning, stop + 1,
+             fmt::format("neither an aperture nor the stop's size is stated: it opens to {:.4g} mm, "
+                         "as far as the other surfaces let an axial beam pass",
+                         opening)});
+        return;
     }
     const std::vector<double> paraxial = paraxial_heights(prescription, traced);
     const std::vector<double> heights =

@@ -12,7 +12,8 @@ void open_stop(Lens& lens, const Prescription& prescription);
 /// as design programs do: real rays along the bundle's two diameters, to the pupil that vignetting factors leave. The
 /// fields are those of the design, or the half field or the image circle that the source claims; without any, the axis.
 /// In lenses with tilted or shifted surfaces, and where no chief ray passes, paraxial marginal and chief rays are added
-/// up. Throws InputError where the stop's opening is not known.
+/// up. Where the stop alone has no size it opens as far as the others let an axial beam pass, which is among the lens's
+/// findings. Throws InputError where the stop's opening is not known.
 void estimate_rims(Lens& lens, const Prescription& prescription);
 
 }  // namespace lensproof::optics

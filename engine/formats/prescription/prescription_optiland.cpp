@@ -273,7 +273,9 @@ class OptilandLens {
                    fmt::format("an aperture of the kind \"{}\" is left out", printable(type)));
             return;
         }
-        surface.semi_diameter_mm = any_number(aperture.at("r_max"));
+        if (const double largest = any_number(aperture.at("r_max")); largest != kInfinity) {  // a hole alone
+            surface.semi_diameter_mm = largest;
+        }
         if (number_or(aperture, "r_min", 0.0) != 0.0) {
             remark("aperture-not-read", number, "the hole in its aperture is left out");
         }

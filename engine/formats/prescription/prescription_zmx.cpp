@@ -141,6 +141,17 @@ void free_stop(const ZmxFile& file, const std::vector<int>& rows, optics::Prescr
     }
 }
 
+/// OpticStudio writes no file without a STOP; other programs do.
+void choose_stop(ZmxFile& file, Remarks& remarks) {
+    if (file.surfaces.size() > 2 && std::ranges::none_of(file.surfaces, &ZmxSurface::is_stop)) {
+        const auto first = std::find_if_not(file.surfaces.begin() + 1, file.surfaces.end() - 1,
+                                            [](const ZmxSurface& each) { return each.is_break(); });
+        first->is_stop = true;
+        remarks.add("stop", optics::Severity::warning, static_cast<int>(first - file.surfaces.begin()),
+                    "no STOP says which surface is the stop; the first is taken");
+    }
+}
+
 void read_fields(const ZmxFile& file, optics::Prescription& prescription, Remarks& remarks) {
     using optics::FieldKind;
     static constexpr FieldKind kKinds[] = {FieldKind::angle, FieldKind::object_height, FieldKind::paraxial_image_height,
@@ -270,7 +281,8 @@ void read_configurations(const ZmxFile& file, const std::vector<optics::Prescrib
 
 optics::Prescription parse_zmx(const std::string& text, const std::filesystem::path& file) {
     Remarks remarks;
-    const ZmxFile zmx = read_zmx_file(to_utf8(text), file, remarks);
+    ZmxFile zmx = read_zmx_file(to_utf8(text), file, remarks);
+    choose_stop(zmx, remarks);
     optics::Prescription prescription = prescription_of(file);
     read_names(zmx, prescription);
     const int image = static_cast<int>(zmx.surfaces.size()) - 1;

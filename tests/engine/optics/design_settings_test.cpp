@@ -146,6 +146,18 @@ TEST(UnstatedRims, NeedAnAperture) {
                      "expected semi_diameter_mm, or stated.f_number"));
 }
 
+// A stop without a size, all other rims stated: the axial beam fills it, and would not fill a wider one.
+TEST(UnstatedRims, OfTheStopAloneIsWhatTheOthersLeave) {
+    Prescription lens = formats::read_prescription(formats::find_lens_file("tessar"));
+    lens.stated = {};
+    std::ranges::find_if(lens.surfaces, &PrescribedSurface::is_stop)->semi_diameter_mm.reset();
+    Lens open = made(lens);
+    EXPECT_TRUE(stop_is_filled(open, {0.0}, spectral::kLineD));
+    EXPECT_EQ(open.findings.at(0).code, "stop-size");
+    open.surfaces[open.stop_index()].semi_diameter *= 1.001;
+    EXPECT_FALSE(stop_is_filled(open, {0.0}, spectral::kLineD));
+}
+
 // Each kind of field against what it says of the chief ray of the angle that it became.
 TEST(DesignFields, BecomeTheAnglesOfTheirChiefRays) {
     Prescription prescription = formats::read_prescription(formats::find_lens_file("tessar"));

@@ -337,6 +337,12 @@ TEST(Optiland, ReadsOddAspheres) {
     EXPECT_EQ(find_remark(lens, "shape-not-read", 2), nullptr);
 }
 
+TEST(Optiland, AnApertureWithoutEndIsNone) {
+    const optics::Prescription lens =
+        parse_optiland(replaced(kOptiland, "\"r_max\": 10.0", "\"r_max\": Infinity"), "a.json");
+    EXPECT_FALSE(lens.surfaces[0].semi_diameter_mm);
+}
+
 TEST(Optiland, NamesWhatItDoesNotUnderstand) {
     const optics::Prescription mirror =
         parse_optiland(replaced(kOptiland, "\"is_reflective\": false", "\"is_reflective\": true"), "a.json");

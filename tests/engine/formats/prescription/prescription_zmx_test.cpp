@@ -254,6 +254,15 @@ TEST(Zmx, IsSilentOnWhatBearsOnNoRay) {
     EXPECT_TRUE(lens.figures_are_spare);
 }
 
+TEST(Zmx, TakesTheFirstSurfaceForAStopThatIsNotMarked) {
+    const optics::Prescription lens = parse(kHead + kObject + surf(1, "  DISZ 2\r\n  DIAM 9\r\n") +
+                                            surf(2, "  DISZ 3\r\n") + surf(3, "  DISZ 0\r\n"));
+    EXPECT_TRUE(lens.surfaces.at(0).is_stop);
+    EXPECT_FALSE(lens.surfaces.at(0).semi_diameter_mm) << "ENPD opens it";
+    EXPECT_FALSE(lens.surfaces.at(1).is_stop);
+    EXPECT_TRUE(has_finding(lens, "stop", "no STOP"));
+}
+
 // The terms of the odd asphere are of r, r², …, those of the extended ones of (r / R), (r / R)², … or of their squares,
 // with the number of terms and R before them (OpticStudio's help).
 TEST(Zmx, ReadsOddAndExtendedAspheres) {
