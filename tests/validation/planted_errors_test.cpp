@@ -17,6 +17,7 @@
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "tests/places.h"
+#include "tests/trials.h"
 
 namespace lensproof::planted_errors_test {
 
@@ -360,7 +361,7 @@ struct GoodLens {
 std::vector<GoodLens> good_lenses() {
     std::vector<GoodLens> lenses;
     for (const std::string& name : formats::shipped_lens_names()) {
-        lenses.push_back({name, formats::read_prescription(formats::find_lens_file(name)), {}, 2});
+        lenses.push_back({name, formats::read_prescription(formats::find_lens_file(name)), {}, trials<std::size_t>(2, 6)});
     }
     const std::filesystem::path matched = shared_data() / "matched";
     if (!std::filesystem::exists(matched / "pairs.csv")) {
@@ -376,7 +377,7 @@ std::vector<GoodLens> good_lenses() {
         if (std::ranges::none_of(product.remarks, [](const optics::Finding& remark) {
                 return remark.severity == optics::Severity::error;  // surfaces that are not traced here
             })) {
-            lenses.push_back({name, product, {.efl_mm = focal_length}, 7});
+            lenses.push_back({name, product, {.efl_mm = focal_length}, trials<std::size_t>(7, 21)});
         }
     }
     return lenses;

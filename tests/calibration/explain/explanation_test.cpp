@@ -10,6 +10,7 @@
 
 #include "engine/base/input_error.h"
 #include "tests/calibration/explain/simulated_profile.h"
+#include "tests/trials.h"
 
 namespace lensproof::calibration::explanation_test {
 
@@ -21,11 +22,6 @@ using explain_test::Studio;
 LensExplanation explained(const Studio& studio, const Profile& profile, const std::string& lens) {
     return explain(formats::load_lens(lens), {{"profile.json", profile}},
                    {.free = studio.free, .focus_mm = studio.distance_mm});
-}
-
-/// A trial takes seconds: as many as it takes to be sure are for LENSPROOF_ALL_TRIALS=1, a few for every day.
-unsigned trials(unsigned all, unsigned few) {
-    return std::getenv("LENSPROOF_ALL_TRIALS") != nullptr ? all : few;  // NOLINT(concurrency-mt-unsafe)
 }
 
 /// Whether a cause is named, first or among those that are nearly as likely.
@@ -58,7 +54,7 @@ class ExplainedFaults : public testing::TestWithParam<Trial> {};
 TEST_P(ExplainedFaults, AreNamedWithinTheirErrors) {
     const Trial& trial = GetParam();
     unsigned named = 0;
-    const unsigned seeds = trials(4, 1);
+    const unsigned seeds = trials(4U, 1U);
     for (unsigned seed = 1; seed <= seeds; ++seed) {
         const LensExplanation found =
             explained(trial.studio, simulated_profile(trial.studio, trial.faults, seed), trial.studio.lens);
@@ -90,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
 // The prescription itself, through noise: nothing is claimed.
 TEST(Explanation, NoiseAloneIsNotExplained) {
     for (const Studio& studio : {Studio{}, kBiotar}) {
-        for (unsigned seed = 11; seed < 11 + trials(2, 1); ++seed) {
+        for (unsigned seed = 11; seed < 11 + trials(2U, 1U); ++seed) {
             const LensExplanation found = explained(studio, simulated_profile(studio, {}, seed), studio.lens);
             EXPECT_EQ(found.verdict, FitVerdict::unexplained) << found.reason;
             EXPECT_EQ(found.cause, "");
@@ -136,7 +132,7 @@ TEST(LensFit, IntervalsHoldTheTruth) {
     const Belief belief = usual_belief(lens.changes);
     int held = 0;
     int count = 0;
-    for (unsigned seed = 0; seed < trials(200, 40); ++seed) {
+    for (unsigned seed = 0; seed < trials(200U, 40U); ++seed) {
         synthetic::Noise draw(seed + 5000);
         Eigen::VectorXd truth = belief.mean;
         for (Eigen::Index i = 0; i < truth.size(); ++i) {
