@@ -25,7 +25,7 @@ coordinate breaks.
 
 A file may hold what a reader of centred lenses does not understand (`needs` in first_order.json: mirrors, gratings).
 Then either the numbers agree, or there are none and a message names what was not understood. Of some (UNDERSTOOD) no
-program has numbers, but ours; gratings are read, and refused by `analyze` alone (NAMES).
+program has numbers, but ours.
 """
 import csv, hashlib, json, pathlib, subprocess, sys, tempfile
 
@@ -40,8 +40,7 @@ SIGNED_BY_CONVENTION = ("efl_mm", "bfl_mm", "exit_pupil_z_mm")  # in files with 
 # Mirrors of power off the axis, which a first order along one axis says nothing of: rayoptics and Optiland leave tilts
 # out, here distances are those along the first surface's axis.
 OFF_AXIS = ("HoO-V2C18Ex46.zmx", "HoO-V2C18Ex66.zmx", "HoO-V2C18Ex66NEW.zmx", "dec_test.seq")
-UNDERSTOOD = {"MIRROR", "COORDBRK", "DIF", "QED_TYPE", "C79-80", "FusedSilica"}
-NAMES = {"DGRATING": "a grating turns"}
+UNDERSTOOD = {"MIRROR", "COORDBRK", "DGRATING", "DIF", "QED_TYPE", "C79-80", "FusedSilica"}
 SETTINGS_TOLERANCE = 1e-4
 FIELD_ROUND_OFF_DEG = 1e-7
 SETTINGS = ("wavelength_nm", "efl_mm", "entrance_pupil_diameter_mm", "f_number", "fields_deg")
@@ -92,7 +91,7 @@ def with_constant_glasses(file, gap_indices, folder):
 
 
 def names_a_need(status, said, sample):
-    return status in (0, 1, 2) and any(NAMES.get(need, need).lower() in said.lower() for need in sample["needs"])
+    return status in (0, 1, 2) and any(need.lower() in said.lower() for need in sample["needs"])
 
 
 def without_signs(numbers):

@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kFarObject = 1e10;      // mm, from which on rayoptics means infinity
 constexpr double kUnsetAperture = 1.0;   // what a new interface has until its size is set
-constexpr int kHighestEvenPower = 20;    // of EvenPolynomial's coef2, coef4, …
-constexpr int kHighestRadialPower = 10;  // of RadialPolynomial's coef1, coef2, …
+constexpr int kHighestEvenPower = 20;    // of EvenPolynomial's r², r⁴, …
+constexpr int kHighestRadialPower = 10;  // of RadialPolynomial's r, r², …
 
 std::string class_of(const JsonNode& object) {
     const std::vector<JsonNode> type = object.at("__instance_type__").elements();
@@ -138,10 +138,10 @@ class RayopticsLens {
             surface.conic = number_or(profile, "cc", 0.0);
         }
         if (kind == "EvenPolynomial") {
-            read_terms(profile, 2, kHighestEvenPower, surface);
+            read_terms(profile, number, 2, kHighestEvenPower, surface);
         } else if (kind == "RadialPolynomial") {
             surface.conic = number_or(profile, "ec", 1.0) - 1.0;
-            read_terms(profile, 1, kHighestRadialPower, surface);
+            read_terms(profile, number, 1, kHighestRadialPower, surface);
         } else if (kind != "Spherical" && kind != "Conic") {
             remark("shape-not-read", number,
                    fmt::format("a profile of the kind \"{}\" is not understood: its curvature alone is taken",
@@ -150,10 +150,31 @@ class RayopticsLens {
         }
     }
 
-    /// "coef2", "coef4", …: of r², r⁴, …; by steps.
-    void read_terms(const JsonNode& profile, int step, int highest, optics::PrescribedSurface& surface) const {
-        for (int power = step; power <= highest; power += step) {
-            surface.term(power) = number_or(profile, fmt::format("coef{}", power), 0.0) * std::pow(unit_mm_, 1 - power);
+    /// A list "coefs" for powers by steps; older versions left it empty, beside "coef2", "coef4", …, or began it with
+    /// power 0, one term more than there are powers.
+    void read_terms(const JsonNode& profile, int number, int step, int highest, optics::PrescribedSurface& surface) {
+        std::vector<double> terms;
+        if (profile.has("coefs")) {
+            for (const JsonNode& each : profile.at("coefs").elements()) {
+                terms.push_back(any_number(each));
+            }
+        }
+        if (std::ranges::all_of(terms, [](double term) { return term == 0.0; })) {
+            terms.clear();
+            for (int power = step; power <= highest; power += step) {
+                terms.push_back(number_or(profile, fmt::format("coef{}", power), 0.0));
+            }
+        } else if (step == 1 && std::ssize(terms) == highest + 1) {
+            terms.erase(terms.begin());
+        }
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            const int power = static_cast<int>(i + 1) * step;
+            if (power <= optics::kHighestPower) {
+                surface.term(power) = terms[i] * std::pow(unit_mm_, 1 - power);
+            } else if (terms[i] != 0.0) {
+                remark("asphere-term-not-read", number, fmt::format("its term of r^{} is left out", power),
+                       optics::Severity::error);
+            }
         }
     }
 

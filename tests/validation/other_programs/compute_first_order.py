@@ -61,6 +61,7 @@ AXIS = "measures along the tilted path; along the first surface's axis it is ano
 NO_IMAGE = "takes the last S line for the image; without SI the image is another surface behind it"
 PLANE = "takes the paraxial image height where the image surface stands, which is not where the paraxial image is"
 ANGLES = "divides the angle of the largest image height, not its tangent, between the others"
+THIN = "has thin lenses that do not image the stop into its paraxial pupil"
 SLOPE = "takes OBNA for the paraxial slope; it is a sine"
 
 
@@ -87,15 +88,29 @@ VERDICTS = {
     # The object is 100 mm off, its image 1 mm high: 1/m = (100 + ffl) / efl. The stop is surface 1.
     ("codev/tests/singlet.seq", "rayoptics", "fields_deg"):
         (PLANE, paraxial_angles((100 - 12.88284833464449) / 100, efl=13.105460925614661)),
-    # These two are not yet held: their mirrors are refused.
     ("paraboloid_f8.seq", "rayoptics", "fields_deg"): (ANGLES,),
     ("US05331467-1.zmx", "rayoptics", "fields_deg"): (PLANE, paraxial_angles(14, 21, efl=999.6387665280338)),
     ("US05331467-1.zmx", "optiland", "fields_deg"): (PLANE, paraxial_angles(14, 21, efl=999.6369653778445)),
+    ("US05331467-1_asm.roa", "rayoptics", "fields_deg"): (PLANE, paraxial_angles(14, 21, efl=999.6387665280338)),
+    ("singlet_f5.roa", "rayoptics", "fields_deg"):
+        (PLANE, paraxial_angles((100 - 12.88284833464449) / 100, efl=13.105460925614661)),
+    ("telephoto.roa", "rayoptics", "fields_deg"): (PLANE, paraxial_angles(2, efl=49.847126174629764)),
+    ("cell_phone_camera.roa", "rayoptics", "fields_deg"):
+        (f"{ANGLES}; {PLANE}", paraxial_angles(0.7071 * 3.5, 3.5, efl=5.555070373138434)),
+    ("cell_phone_camera_old.roa", "rayoptics", "fields_deg"):
+        (f"{ANGLES}; {PLANE}", paraxial_angles(2.47485, 3.5, efl=5.5870725027251655)),
+    ("US007277232_Example04P.roa", "rayoptics", "fields_deg"):
+        (ANGLES, paraxial_angles(0.707 * 14.2, 14.2, efl=18.499984343786203)),
+    ("Example04P_hikari_glasses.roa", "rayoptics", "fields_deg"):
+        (f"{ANGLES}; {PLANE}", paraxial_angles(0.707 * 14.2, 14.2, efl=19.249347121134132)),
+    # The object of half that magnification, as far from the paraxial pupil as rayoptics itself has it.
+    ("thin_triplet.roa", "rayoptics", "fields_deg"):
+        (THIN, paraxial_angles(2 / 0.5, efl=17.22446549861915 + 3.6520037425064817)),
     ("US05831776-1.zmx", "rayoptics", "entrance_pupil_diameter_mm"): (SLOPE,),
     ("US05831776-1.zmx", "rayoptics", "fields_deg"): ("sends its chief ray past the stop's centre by 0.5 mm",),
 }
 # What our own reader names where it refuses a file for another reason than a surface that is beyond centred lenses.
-REFUSALS = {("ZMXFILES/LENS.ZMX",): ["no semi-diameter is stated"],
+REFUSALS = {("ZMXFILES/LENS.ZMX",): ["neither an aperture nor the stop's size is stated"],
             ("zemax/tests/ASL5040-UV-Zemax(ZMX).zmx",): ["C79-80"],  # the maker's own name of fused silica
             ("specifications/ASL5040-UV-Zemax(ZMX).zmx",): ["FusedSilica"]}
 

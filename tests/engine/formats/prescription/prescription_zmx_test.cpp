@@ -341,7 +341,7 @@ TEST(Zmx, HostileFilesAreRefusedByLine) {
     for (int i = 0; i < 5000; ++i) {
         unknown += "  K" + std::to_string(i) + " 1\r\n";
     }
-    EXPECT_EQ(parse(unknown + surf(1, "") + surf(2, "")).remarks.size(), 101U);
+    EXPECT_EQ(parse(unknown + kStop + surf(2, "")).remarks.size(), 101U);
 }
 
 TEST(Zmx, EveryEncodingIsTheSameLens) {

@@ -95,6 +95,22 @@ TEST(Rayoptics, ALensIsWhatItsObjectsSay) {
     EXPECT_NEAR(lens.fields.vignetting[0].compression.y, 0.4, 1e-15);
 }
 
+// Newer versions have a list, with the names of old beside it, all 0; some counted powers from 0 on.
+TEST(Rayoptics, AspheresTermsStandInAList) {
+    Model model;
+    const auto term = [&](const std::string& profile, int power) {
+        model.interfaces = surface(profile);
+        model.gaps = gap("1e10") + ", " + gap("2.0");
+        return model.read().surfaces.at(0).term(power);
+    };
+    const std::string named = R"(, "coef1": 0.0, "coef2": 0.0, "coef4": 0.0)";
+    EXPECT_EQ(term(object("EvenPolynomial", R"("cv": 0.1, "cc": 0.0, "coefs": [0.0, 0.25])" + named), 4), 0.25);
+    EXPECT_EQ(term(object("RadialPolynomial", R"("cv": 0.1, "ec": 1.0, "coefs": [0.0, 0.0, 0.5])" + named), 3), 0.5);
+    const std::string eleven = "[0, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0]";
+    EXPECT_EQ(term(object("RadialPolynomial", R"("cv": 0.1, "ec": 1.0, "coefs": )" + eleven), 3), 0.5);
+    EXPECT_EQ(term(object("EvenPolynomial", R"("cv": 0.1, "cc": 0.0, "coefs": [0, 0], "coef4": 0.75)"), 4), 0.75);
+}
+
 // Radial polynomials count powers from 1, and their conic is 1 + k; a lens in inches has all of its lengths in them.
 TEST(Rayoptics, LengthsAreInItsUnit) {
     constexpr double kInch = 25.4;
