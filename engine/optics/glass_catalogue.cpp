@@ -41,10 +41,7 @@ AskedName asked_name(std::string_view text, const IsMaker& is_maker) {
     }
     asked.maker = first ? parts.front() : parts.back();
     parts.erase(first ? parts.begin() : parts.end() - 1);
-    asked.glass.clear();
-    for (const std::string_view part : parts) {
-        asked.glass += (asked.glass.empty() ? "" : " ") + std::string(part);
-    }
+    asked.glass.assign(parts.front().data(), parts.back().data() + parts.back().size());  // as it is separated itself
     return asked;
 }
 

@@ -15,7 +15,7 @@ struct Glass;
 /// so that n_d and V_d are met exactly. The three s_j are linear in 1, V_d, 1/V_d and n_d, with coefficients from a
 /// least squares fit to the 1869 glasses of SCHOTT, OHARA, HOYA, HIKARI and CDGM that ship. That is the idea of the
 /// "normal line" on which partial dispersions lie (SCHOTT TIE-29), for every wavelength from 365 to 1014 nm at once.
-/// Its error is 2.0e-4 rms at 400 nm, 7.7e-5 at g, 2.3e-4 at 1014 nm; a quadratic in Buchdahl's coordinate on SCHOTT's
+/// Its error is 2.2e-4 rms at 400 nm, 8.2e-5 at g, 2.4e-4 at 1014 nm; a quadratic in Buchdahl's coordinate on SCHOTT's
 /// line P_gF = 0.6438 − 0.001682 V_d has 8.2e-4, 3.8e-4 and 6.5e-4. Glasses off the normal line (PK, FK, KZFS, the
 /// heaviest SF) err most: see `normal_line_error`. Outside 15 ≤ V_d ≤ 100, 1.4 ≤ n_d ≤ 2.2 the s_j are those of the
 /// nearest edge.

@@ -187,8 +187,8 @@ TEST(Mirror, FocusesOnAnObject) {
 }
 
 TEST(Mirror, WhatIsNoneOfThemIsRefused) {
-    Prescription forwards = paraboloid();
-    forwards.surfaces.front().thickness_mm = 500.0;
+    Prescription forwards = cassegrain();
+    forwards.surfaces.front().thickness_mm *= -1.0;
     EXPECT_TRUE(says(lensproof::complaint_about([&] { make_lens(forwards, {}); }), "behind a mirror"));
     Prescription two_media = paraboloid();
     two_media.surfaces.front().medium.n_d = 1.5;
