@@ -230,16 +230,24 @@ TEST(OrderOfSurfaces, IsNoErrorWhereTheRimsAreEstimated) {
 }
 
 // A half ball with its flat side in front at f/3.3 has its marginal focus some 2 mm before the paraxial one at 20 mm
-// (third order: 4.5 y² / f). Between the two real rays are sharper: who puts the sensor there means it. Beyond the
-// paraxial focus they are not, as far off as it is.
+// (third order: 4.5 y² / f), and its real rays are sharpest a little behind the middle of the two, or of higher orders
+// further in front: who puts the sensor there means it. Elsewhere, and beyond the paraxial focus, it is a slip.
 TEST(CheckerRays, ABestFocusIsNoWrongBackFocus) {
     optics::Prescription lens = half_ball(3.0);
-    lens.surfaces[1].thickness_mm = 19.0;
-    const CheckReport within = checked(lens);
-    const optics::Finding* meant = find(within, "back-focus", 2);
-    ASSERT_NE(meant, nullptr) << said(within);
-    EXPECT_EQ(meant->severity, optics::Severity::info) << meant->message;
-    EXPECT_NEAR(meant->value, 5.0, 1e-9);
+    std::vector<double> meant_mm;
+    for (double mm = 16.0; mm < 19.7; mm += 0.05) {
+        lens.surfaces[1].thickness_mm = mm;
+        const CheckReport report = checked(lens);
+        const optics::Finding* found = find(report, "back-focus", 2);
+        ASSERT_NE(found, nullptr) << said(report);
+        if (found->severity == optics::Severity::info) {
+            meant_mm.push_back(mm);
+        }
+    }
+    ASSERT_FALSE(meant_mm.empty());
+    EXPECT_GT(meant_mm.front(), 17.5);
+    EXPECT_LT(meant_mm.back(), 19.0);
+    EXPECT_LT(meant_mm.back() - meant_mm.front(), 0.2 * (20.0 - meant_mm.front()) + 0.05) << "a tenth to either side";
     lens.surfaces[1].thickness_mm = 21.0;
     const CheckReport beyond = checked(lens);
     const optics::Finding* wrong = find(beyond, "back-focus", 2);
