@@ -45,7 +45,8 @@ TEST(Analyze, TheJsonHasEveryKeyOfTheContract) {
     EXPECT_EQ(json["fields"][4]["status"], "clipped");  // 30.1° is beyond the field
 }
 
-// The plane that distortion is told in is the paraxial image's and stated so: a sensor 3 mm off changes no number of it.
+// The plane that distortion is told in is the paraxial image's and stated so: a sensor 3 mm off changes no number of
+// it.
 TEST(Analyze, DistortionIsThatOfALensInFocus) {
     const std::vector<std::string> asked = {"tessar", "--fields", "0,0.01,12,20"};
     std::vector<std::string> out_of_focus = asked;
@@ -57,7 +58,8 @@ TEST(Analyze, DistortionIsThatOfALensInFocus) {
         const double percent = blurred[i]["distortion_percent"].get<double>();
         EXPECT_NEAR(percent, focused[i]["distortion_percent"].get<double>(), 1e-9);
         EXPECT_NE(blurred[i]["spot_rms_um"], focused[i]["spot_rms_um"]);
-        if (blurred[i]["field_deg"].get<double>() < 0.1) {
+        // Other colours are of another size on the axis, too.
+        if (blurred[i]["field_deg"].get<double>() < 0.1 && blurred[i]["wavelength_nm"] == blurred[0]["wavelength_nm"]) {
             EXPECT_NEAR(percent, 0.0, 1e-5);
         }
     }

@@ -23,7 +23,7 @@ PACKAGES = ("mitsuba==3.5.2", "OpenEXR==3.3.2", "numpy==1.26.4")
 PIXELS = 64  # a side
 BLOCK = 8  # pixels a side of what is compared
 RUNS = 32  # of each program
-SAMPLES = 24  # a pixel and run
+SAMPLES = 64  # a pixel and run
 BANDS = 8
 RANGE_NM = (400.0, 700.0)
 STRATA_PER_BAND = 32  # wavelengths at which lensproof looks in each band: 1.2 nm apart, where tables have a row each 4 nm

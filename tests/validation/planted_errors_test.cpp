@@ -361,7 +361,8 @@ struct GoodLens {
 std::vector<GoodLens> good_lenses() {
     std::vector<GoodLens> lenses;
     for (const std::string& name : formats::shipped_lens_names()) {
-        lenses.push_back({name, formats::read_prescription(formats::find_lens_file(name)), {}, trials<std::size_t>(2, 6)});
+        lenses.push_back(
+            {name, formats::read_prescription(formats::find_lens_file(name)), {}, trials<std::size_t>(2, 6)});
     }
     const std::filesystem::path matched = shared_data() / "matched";
     if (!std::filesystem::exists(matched / "pairs.csv")) {

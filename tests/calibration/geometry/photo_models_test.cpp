@@ -33,8 +33,8 @@ std::string unzipped(const std::filesystem::path& file) {
     return text;
 }
 
-// frame, row, column, x, y, weight; a weight of 0 or less marks an outlier of the source's. Each third of the 186 views,
-// or all.
+// frame, row, column, x, y, weight; a weight of 0 or less marks an outlier of the source's. Every second of the 186
+// views, or all.
 std::vector<ChartView> samyang_views() {
     std::istringstream lines(unzipped(kPhotos / "samyang12_corners" / "corners_186boards_10x10_spacing77mm.csv.gz"));
     std::map<int, ChartView> views;
@@ -60,7 +60,7 @@ std::vector<ChartView> samyang_views() {
     }
     std::vector<ChartView> result;
     for (auto& [frame, view] : views) {
-        if (view.image_px.size() >= 10 && frame % trials(1, 3) == 0) {
+        if (view.image_px.size() >= 10 && frame % trials(1, 2) == 0) {
             result.push_back(std::move(view));
         }
     }
