@@ -24,7 +24,7 @@ BlurFilter::BlurFilter(double blur_px) {
 // loops that count run over neighbours in memory.
 void BlurFilter::apply(const cv::Mat& fine, const cv::Point& first, cv::Mat pixels) const {
     const auto rows = static_cast<std::size_t>(pixels.rows);
-    const auto width = static_cast<std::size_t>(pixels.cols * kSubpixels + 2 * reach_);
+    const auto width = static_cast<std::size_t>(pixels.cols) * kSubpixels + 2 * static_cast<std::size_t>(reach_);
     std::vector<float> line(width);
     std::vector<float> down(width * rows);  // by column
     for (std::size_t y = 0; y < rows; ++y) {

@@ -131,7 +131,8 @@ void ChartMap::fill_knots(const Exact& exact, const Lattice& lattice) {
             const bool as_cubic = is_cubic(i, j);
             for (int v = 0; v < knot_rows; ++v) {
                 const std::array<Vec2d, 4> across = lattice.rows_at(i, j, weights[v]);
-                Vec2d* row = &knots_[static_cast<std::size_t>(kBlock * j + v) * columns_ + kBlock * i];
+                Vec2d* row =
+                    &knots_[static_cast<std::size_t>(kBlock * j + v) * columns_ + static_cast<std::size_t>(kBlock) * i];
                 for (int u = 0; u < knot_columns; ++u) {
                     row[u] = as_cubic ? weighted(across, weights[u])
                                       : point_or_nowhere(exact(pixel_of_knot(kBlock * i + u, kBlock * j + v)));

@@ -164,7 +164,7 @@ void linearise(std::vector<float>& values, const TransferCurve& curve, const OII
             value = to_linear(curve, value);
             continue;
         }
-        Known& own = known[static_cast<std::size_t>(255.0F * value + 0.5F)];
+        Known& own = known[static_cast<std::size_t>(std::lround(255.0F * value))];
         if (own.value != value) {
             own = {value, to_linear(curve, value)};
         }
