@@ -13,7 +13,7 @@ file(GLOB experiments CONFIGURE_DEPENDS experiments/*.toml)
 install(FILES ${experiments} DESTINATION ${data}/experiments COMPONENT program)
 # Pages link to each other and to what they describe, so they lie as in the source tree.
 file(GLOB_RECURSE pages CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" engine/*.md calibration/*.md experiments/*.md
-     tests/*.md engine/*.png calibration/*.png experiments/draw/*.png)
+     tests/*.md engine/*.png calibration/*.png experiments/draw/*.jpg experiments/docs/*.png experiments/docs/*.svg)
 foreach(page IN LISTS pages ITEMS README.md)
     get_filename_component(folder ${page} DIRECTORY)
     install(FILES ${page} DESTINATION ${data}/${folder} COMPONENT program)
