@@ -76,7 +76,8 @@ TEST(ChartMap, EvenCellsHaveNoEdgeNear) {
                 }
                 ++even;
                 for (int k = 0; k < 25; ++k) {
-                    const auto place = exact({x + k % 5 - 2.0, y + k / 5 - 2.0});
+                    const int row = k / 5;
+                    const auto place = exact({x + k % 5 - 2.0, y + row - 2.0});
                     ASSERT_TRUE(place) << each.name << " " << x << ", " << y;
                     ASSERT_EQ(static_cast<float>(scene::reflectance(kBoard, place->x, place->y)), tone)
                         << each.name << " " << x << ", " << y;
