@@ -108,7 +108,7 @@ void expect_same(const std::vector<TraceRow>& rows, const Json& ray) {
         EXPECT_EQ(first_clipped(rows), ray["clipped"]);
     } else {
         EXPECT_EQ(rows.back().surface, std::to_string(surfaces.size() + 1));
-        EXPECT_EQ(rows.back().status, ray["status"]);
+        EXPECT_EQ(rows.back().status, ray["status"].get<std::string>());
     }
 }
 
