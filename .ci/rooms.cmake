@@ -7,7 +7,7 @@
 # makes the library FOLDER with '/' as '_' of the folder's sources. EXPOSES: libraries whose headers its own include.
 #
 # Under the sanitizers, where clang-tidy judges every text too, all rooms of engine are one library: its texts hold sources
-# of several rooms, and what they all include is read once for each text.
+# of several rooms, and what they all include is read once for each text. Those of experiments are not optimised there.
 
 if(CMAKE_SCRIPT_MODE_FILE)  # cmake -DROOM=… -DUSES=… -DFILES=… -DSTAMP=… -P rooms.cmake: the check, within a build
     cmake_minimum_required(VERSION 3.25)
@@ -70,7 +70,7 @@ function(lensproof_room folder)
     if(NOT TARGET ${library})
         add_library(${library} STATIC)
     endif()
-    if(LENSPROOF_SANITIZE AND folder MATCHES "^experiments/")  # little runs here itself
+    if(LENSPROOF_SANITIZE AND folder MATCHES "^experiments/")  # most of their time is others'
         target_compile_options(${library} PRIVATE -O0)
     elseif(NOT LENSPROOF_SANITIZE)  # the Python module is a shared object; the program is as fast as without
         set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON)
