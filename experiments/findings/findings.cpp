@@ -22,6 +22,7 @@ void append(Findings& all, Findings more) {
         all.subjects_title += (all.subjects_title.empty() ? "" : ", ") + more.subjects_title;
     }
     move_to(all.subjects, more.subjects);
+    move_to(all.chapters, more.chapters);
     for (Plot& plot : more.plots) {
         const auto known = std::ranges::find(all.plots, plot.id, &Plot::id);
         if (known == all.plots.end()) {

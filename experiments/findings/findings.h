@@ -105,6 +105,13 @@ struct Failure {
     bool is_of_input = false;  // else of the machine: no memory, no room on the disk
 };
 
+/// Subjects that belong together, with what is to be said of them.
+struct Chapter {
+    std::string title;
+    std::string text;
+    std::vector<std::string> subjects;  // ids
+};
+
 /// What subjects are together where a report's page is not told otherwise (experiments/draw/report/report.h).
 inline constexpr const char* kUsualSubjects = "Renders and photos";
 
@@ -114,6 +121,7 @@ struct Findings {
     bool counts_checks = false;    // the report's summary says how many of them hold
     std::string subjects_title{};  // what the subjects are together
     std::vector<Subject> subjects{};
+    std::vector<Chapter> chapters{};  // subjects that are in none stand behind them
     std::vector<Plot> plots{};
     std::vector<Map> maps{};
     std::vector<std::pair<std::string, Json>> tables{};  // numbers for programs, by their key in report.json

@@ -34,7 +34,8 @@ Picture shown_picture(const std::string& name, const std::string& caption, const
             .caption = caption,
             .width = image.width,
             .height = image.height,
-            .bytes = formats::encode_png(shrunk(image, widest))};
+            .bytes = name.ends_with(".jpg") ? formats::encode_jpeg(shrunk(image, widest))
+                                            : formats::encode_png(shrunk(image, widest))};
 }
 
 std::string laid_picture(const formats::Image& image) {

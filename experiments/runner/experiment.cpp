@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <exception>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "engine/base/input_error.h"
@@ -54,6 +57,45 @@ constexpr std::array kStudies = {
     StudyKind{"[[photographed_lenses]]", studies::read_photographed_lenses},
 };
 
+std::set<std::string> study_names(const Experiment& experiment) {
+    std::set<std::string> names;
+    for (const auto& [table, study] : experiment.studies) {
+        names.insert(study.name);
+    }
+    return names;
+}
+
+StatedChapter read_chapter(TomlTable& table, const std::set<std::string>& known) {
+    StatedChapter chapter{
+        .title = table.text("title"), .text = table.text_or("text", ""), .holds = table.texts("holds")};
+    for (const std::string& name : chapter.holds) {
+        if (!known.contains(name)) {
+            table.fail("holds",
+                       fmt::format("names \"{}\", expected studies of this file: {}", name, fmt::join(known, ", ")));
+        }
+    }
+    table.finish();
+    return chapter;
+}
+
+/// With the subjects that their studies have found; one without is left out.
+std::vector<findings::Chapter> chapters_of(const Experiment& experiment,
+                                           const std::map<std::string, std::vector<std::string>>& subjects) {
+    std::vector<findings::Chapter> chapters;
+    for (const StatedChapter& stated : experiment.chapters) {
+        findings::Chapter chapter{.title = stated.title, .text = stated.text, .subjects = {}};
+        for (const std::string& name : stated.holds) {
+            if (const auto found = subjects.find(name); found != subjects.end()) {
+                std::ranges::copy(found->second, std::back_inserter(chapter.subjects));
+            }
+        }
+        if (!chapter.subjects.empty()) {
+            chapters.push_back(std::move(chapter));
+        }
+    }
+    return chapters;
+}
+
 }  // namespace
 
 Experiment read_experiment(const std::filesystem::path& path) {
@@ -69,6 +111,9 @@ Experiment read_experiment(const std::filesystem::path& path) {
             expected.emplace_back(kind.tables);
         }
     }
+    for (TomlTable& chapter : file.top.tables("chapters")) {
+        experiment.chapters.push_back(read_chapter(chapter, study_names(experiment)));
+    }
     file.top.finish();
     if (experiment.studies.empty()) {
         file.top.fail("", fmt::format("holds neither {}", fmt::join(expected, " nor ")));
@@ -77,10 +122,7 @@ Experiment read_experiment(const std::filesystem::path& path) {
 }
 
 Experiment with_only(Experiment experiment, const std::vector<std::string>& names) {
-    std::set<std::string> known;
-    for (const auto& [table, study] : experiment.studies) {
-        known.insert(study.name);
-    }
+    const std::set<std::string> known = study_names(experiment);
     for (const std::string& name : names) {
         if (!known.contains(name)) {
             throw InputError(fmt::format("--only names \"{}\", expected a study of {}: {}", printable(name),
@@ -104,6 +146,7 @@ void expect_steps(const Experiment& experiment, const findings::RunSettings& set
 findings::Findings run_experiment(const Experiment& experiment, const findings::RunSettings& settings,
                                   const findings::RunProgress& progress) {
     findings::Findings found{.inputs = {experiment.file}};
+    std::map<std::string, std::vector<std::string>> subjects;  // of each study
     std::exception_ptr first;
     const auto fail = [&](const std::string& study, const std::string& message, bool is_of_input) {
         found.failures.push_back({.study = study, .message = message, .is_of_input = is_of_input});
@@ -111,13 +154,16 @@ findings::Findings run_experiment(const Experiment& experiment, const findings::
     };
     for (const auto& [table, study] : experiment.studies) {
         try {
-            findings::append(found, study.carry_out(settings, progress, found));
+            findings::Findings more = study.carry_out(settings, progress, found);
+            std::ranges::transform(more.subjects, std::back_inserter(subjects[study.name]), &findings::Subject::id);
+            findings::append(found, std::move(more));
         } catch (const InputError& error) {
             fail(study.name, error.what(), true);
         } catch (const std::exception& error) {
             fail(study.name, error.what(), false);
         }
     }
+    found.chapters = chapters_of(experiment, subjects);
     if (found.failures.size() < experiment.studies.size() || !first) {
         return found;
     }

@@ -9,12 +9,20 @@
 
 namespace lensproof::runner {
 
+/// A chapter of the report: what some of the studies find, with what is to be said of it.
+struct StatedChapter {
+    std::string title;
+    std::string text;
+    std::vector<std::string> holds;  // studies' names, in their order there
+};
+
 struct Experiment {
     std::filesystem::path file;
     std::string title;
     std::string summary;
     /// In the order of the list in experiment.cpp, each with what its table is called in the file: "[[stray_light]]".
     std::vector<std::pair<std::string, findings::Study>> studies;
+    std::vector<StatedChapter> chapters{};
     std::vector<std::string> only{};  // the names that were asked for; empty: all
 };
 

@@ -181,6 +181,10 @@ Json report_json(const ReportHead& head, const findings::Findings& found) {
     report["subjects"] = Json::list();
     std::ranges::transform(found.checks, std::back_inserter(report["checks"]), check_json);
     std::ranges::transform(found.subjects, std::back_inserter(report["subjects"]), subject_json);
+    for (const findings::Chapter& chapter : found.chapters) {
+        report["chapters"].push_back(
+            {{"title", chapter.title}, {"text", chapter.text}, {"subjects", chapter.subjects}});
+    }
     for (const auto& [key, table] : found.tables) {
         report[key] = table;
     }

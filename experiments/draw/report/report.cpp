@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -198,26 +199,60 @@ std::string maps_html(const Json& report, const Files& files) {
     return out.empty() ? "" : "<h3 class=\"maps-title\">Over the frame</h3>\n<div class=\"maps\">\n" + out + "</div>\n";
 }
 
+std::string subject_html(const Json& subject, std::size_t place, const Files& files) {
+    const std::string number = std::to_string(place);
+    std::string out = "<section class=\"subject s" + std::to_string(place % kSubjectColours) + "\" id=\"subject-" +
+                      number + "\"><h3><i class=\"swatch\" aria-hidden=\"true\"></i>" + text(subject, "label") +
+                      " <small>" + text(subject, "kind") + "</small></h3>\n" + facts_html(subject);
+    const Json::List& pictures = subject["pictures"].elements();
+    if (!pictures.empty()) out += "<div class=\"pictures\">\n";
+    for (std::size_t k = 0; k < pictures.size(); ++k) {
+        out += picture_html(pictures[k], "picture-" + number + "-" + std::to_string(k), files);
+    }
+    if (!pictures.empty()) out += "</div>\n";
+    const Json::List& worst = subject["worst"].elements();
+    if (!worst.empty())
+        out += "<div class=\"worst\"><h4>The points that are furthest off</h4>\n<div class=\"crops\">\n";
+    for (const Json& crop : worst) out += picture_html(crop, "", files);
+    return out + (worst.empty() ? "</section>\n" : "</div></div></section>\n");
+}
+
+/// A line for each check that is one of the subjects'.
+std::string chapter_checks_html(const Json& report, const std::set<std::string>& subjects) {
+    std::string out;
+    for (const Json& check : report["checks"]) {
+        if (!subjects.contains(as_text(check["subject"]))) continue;
+        const double value = as_number(check["value"]).value_or(kNaN);
+        out += "<li>" + verdict_html(check) + " " + text(check, "label") + ": " +
+               with_unit(measurement_text(value, as_number(check["sigma"])),
+                         std::isfinite(value) ? text(check, "unit") : "") +
+               " <small>" + limit_html(check) + "</small></li>\n";
+    }
+    return out.empty() ? "" : "<ul class=\"held\">\n" + out + "</ul>\n";
+}
+
 std::string subjects_html(const Json& report, const Files& files) {
     const Json::List& subjects = report["subjects"].elements();
     if (subjects.empty()) return "<p class=\"empty\">This report shows no lens and no photo.</p>\n";
     std::string out;
-    for (std::size_t i = 0; i < subjects.size(); ++i) {
-        const std::string number = std::to_string(i);
-        out += "<section class=\"subject s" + std::to_string(i % kSubjectColours) + "\" id=\"subject-" + number +
-               "\"><h3><i class=\"swatch\" aria-hidden=\"true\"></i>" + text(subjects[i], "label") + " <small>" +
-               text(subjects[i], "kind") + "</small></h3>\n" + facts_html(subjects[i]);
-        const Json::List& pictures = subjects[i]["pictures"].elements();
-        if (!pictures.empty()) out += "<div class=\"pictures\">\n";
-        for (std::size_t k = 0; k < pictures.size(); ++k) {
-            out += picture_html(pictures[k], "picture-" + number + "-" + std::to_string(k), files);
+    std::set<std::string> shown;
+    for (const Json& chapter : report["chapters"]) {
+        std::set<std::string> own;
+        std::string within;
+        for (const Json& id : chapter["subjects"]) {
+            const auto at = std::find_if(subjects.begin(), subjects.end(),
+                                         [&](const Json& subject) { return as_text(subject["id"]) == as_text(id); });
+            if (at == subjects.end() || !shown.insert(as_text(id)).second) continue;
+            own.insert(as_text(id));
+            within += subject_html(*at, static_cast<std::size_t>(at - subjects.begin()), files);
         }
-        if (!pictures.empty()) out += "</div>\n";
-        const Json::List& worst = subjects[i]["worst"].elements();
-        if (!worst.empty())
-            out += "<div class=\"worst\"><h4>The points that are furthest off</h4>\n<div class=\"crops\">\n";
-        for (const Json& crop : worst) out += picture_html(crop, "", files);
-        out += worst.empty() ? "</section>\n" : "</div></div></section>\n";
+        if (own.empty()) continue;
+        out += "<header class=\"chapter\"><h2>" + text(chapter, "title") + "</h2><p>" + text(chapter, "text") + "</p>" +
+               chapter_checks_html(report, own) + "</header>\n" + within;
+    }
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+        const std::string id = as_text(subjects[i]["id"]);
+        if (id.empty() || !shown.contains(id)) out += subject_html(subjects[i], i, files);
     }
     return out;
 }

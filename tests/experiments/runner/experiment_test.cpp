@@ -57,6 +57,35 @@ TEST(Experiment, SubjectsHaveIdsOfTheirOwn) {
         << complaint(kPassage + kPassage);
 }
 
+// A chapter holds what its studies found; of one that found nothing there is none.
+TEST(Experiment, ChaptersHoldWhatStudiesFind) {
+    const TestFolder folder;
+    const auto file = folder.path() / "e.toml";
+    const auto read = [&](const std::string& tables) {
+        write_file(file, "title = \"t\"\n" + tables);
+        return read_experiment(file);
+    };
+    const std::string chapter = "[[chapters]]\ntitle = \"Paths\"\ntext = \"Why.\"\nholds = [\"tessar-f4\"]\n";
+    const Experiment experiment = read(chapter + kPassage);
+    ASSERT_EQ(experiment.chapters.size(), 1U);
+    EXPECT_EQ(experiment.chapters[0].text, "Why.");
+    EXPECT_TRUE(says(complaint_about([&] { read("[[chapters]]\ntitle = \"a\"\nholds = [\"b\"]\n" + kPassage); }),
+                     "holds: names \"b\", expected studies of this file: tessar-f4"));
+    Experiment made{.title = "t",
+                    .studies = {study("one",
+                                      [](const Findings&) {
+                                          Findings found;
+                                          found.subjects = {{.id = "one-a"}, {.id = "one-b"}};
+                                          return found;
+                                      }),
+                                study("two", [](const Findings&) { return Findings{}; })}};
+    made.chapters = {{.title = "First", .holds = {"one"}}, {.title = "Second", .holds = {"two"}}};
+    const Findings found = run_experiment(made, {}, kQuiet);
+    ASSERT_EQ(found.chapters.size(), 1U);
+    EXPECT_EQ(found.chapters[0].title, "First");
+    EXPECT_EQ(found.chapters[0].subjects, (std::vector<std::string>{"one-a", "one-b"}));
+}
+
 // Two cameras' curves go into one plot, with the tighter limit; each study's subjects and tables stand after those of
 // the study before it, which it may look at.
 TEST(Experiment, FindingsGoIntoOneReport) {
