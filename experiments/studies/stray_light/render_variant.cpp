@@ -14,6 +14,7 @@
 #include "engine/base/angle.h"
 #include "engine/formats/image/image_json.h"
 #include "engine/render/film/film_image.h"
+#include "engine/render/integrators/integrators.h"
 #include "engine/render/prepared_scene.h"
 
 namespace lensproof::studies {
@@ -26,7 +27,7 @@ static void fields(JsonArchive& json, PassPicture& picture) {
     json.field("pass", picture.pass)
         .field("rgb", picture.rgb)
         .field("light", picture.light)
-        .field("noise", picture.noise);
+        .field("error", picture.error);
 }
 
 static void fields(JsonArchive& json, GhostEnergy& ghost) {
@@ -58,14 +59,18 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-double noise_of(const render::Film& film) {
-    std::vector<double> errors;
+/// A variance is that of blocks of samples.
+formats::Image errors_of(const render::Film& film, int samples) {
+    if (samples < 2 * static_cast<int>(render::kSamplesPerBlock)) {
+        return {};
+    }
+    formats::Image errors = formats::make_image(film.width(), film.height(), {"Y"});
     for (int y = 0; y < film.height(); ++y) {
         for (int x = 0; x < film.width(); ++x) {
-            errors.push_back(error_of(film.estimate(x, y)));
+            errors.at(x, y, 0) = static_cast<float>(error_of(film.estimate(x, y)));
         }
     }
-    return median(std::move(errors));
+    return errors;
 }
 
 /// Errors of pixels do not go together.
@@ -104,8 +109,10 @@ class VariantSteps {
             const render::Film film =
                 render::render_film(renders().at(index), {.first = 0, .end = static_cast<std::uint32_t>(samples)},
                                     settings_.threads, [&](double done) { progress_(name_of(name), done); });
-            return PassPicture{
-                .pass = name, .rgb = render::film_rgb(film), .light = light_of(film), .noise = noise_of(film)};
+            return PassPicture{.pass = name,
+                               .rgb = render::film_rgb(film),
+                               .light = light_of(film),
+                               .error = errors_of(film, samples)};
         });
     }
 
@@ -145,6 +152,26 @@ class VariantSteps {
         return named;
     }
 
+    [[nodiscard]] std::vector<ChartFeature> features(const std::vector<PassPicture>& passes) {
+        return settings_.steps.step(kFeatures, features_input(), [&] {
+            progress_(name_of("chart"), 0.0);
+            return chart_features(setup_, prepared().camera(), scene_.chart->choice, picture_of(passes),
+                                  settings_.threads);
+        });
+    }
+
+    /// On a frame of a sixteenth of the pixels, which tells as much.
+    [[nodiscard]] std::vector<PictureGrowth> growth() {
+        return settings_.steps.step(kGrowth, growth_input(), [&] {
+            progress_(name_of("loading"), 0.0);
+            render::PreparedScene small(render::coarser(setup_, kGrowthShrinks, 1), render::PixelFilter{},
+                                        settings_.cache, render::integrator_named(scene_.paths));
+            return picture_growth(small.render(scene_.passes, settings_.seed, false, !is_draft()),
+                                  scene_.growth_samples, settings_.threads,
+                                  [&](double done) { progress_(name_of("growth"), done); });
+        });
+    }
+
     [[nodiscard]] std::vector<findings::PlannedStep> planned() const {
         std::vector<findings::PlannedStep> steps;
         const double pixels = static_cast<double>(setup_.camera.sensor.width) * setup_.camera.sensor.height;
@@ -163,6 +190,12 @@ class VariantSteps {
             steps.push_back({kGlare, name_of("veiling glare"), input({}), 10.0,
                              alone([](VariantSteps& own) { return own.veiling_glare(); })});
         }
+        if (scene_.growth_samples > 0) {
+            steps.push_back({kGrowth, name_of("growth"), growth_input(), 20.0});
+        }
+        if (scene_.chart) {
+            steps.push_back({kFeatures, name_of("chart"), features_input(), 3.0});
+        }
         if (scene_.has_audit) {
             steps.push_back({kAudit, name_of("energy audit"), input({}), 5.0,
                              alone([](VariantSteps& own) { return own.fates(); })});
@@ -170,11 +203,16 @@ class VariantSteps {
         return steps;
     }
 
+    [[nodiscard]] const render::Sensor& sensor() const { return setup_.camera.sensor; }
+
   private:
     static constexpr const char* kPass = "stray-pass";
     static constexpr const char* kGhosts = "stray-ghosts";
     static constexpr const char* kGlare = "stray-glare";
     static constexpr const char* kAudit = "stray-audit";
+    static constexpr const char* kFeatures = "stray-chart";
+    static constexpr const char* kGrowth = "stray-growth";
+    static constexpr int kGrowthShrinks = 4;
 
     /// A step of this variant by itself.
     template <class Step>
@@ -191,11 +229,32 @@ class VariantSteps {
         what["scene"] = variant_.stated;
         what["seed"] = settings_.seed;
         what["draft"] = is_draft();
+        what["paths"] = scene_.paths;
         return {.settings = std::move(what), .files = files_};
     }
 
     [[nodiscard]] findings::StepInput pass_input(const std::string& pass) const {
         return input({{"passes", scene_.passes}, {"pass", pass}, {"samples_per_pixel", samples_of(pass)}});
+    }
+
+    [[nodiscard]] int growth_samples() const {
+        return is_draft() ? std::max(8, scene_.growth_samples / (findings::kDraftShrinks * findings::kDraftShrinks))
+                          : scene_.growth_samples;
+    }
+    [[nodiscard]] findings::StepInput growth_input() const {
+        return input({{"passes", scene_.passes}, {"growth_samples", growth_samples()}});
+    }
+
+    /// All that the picture follows from, and what is looked for in it.
+    [[nodiscard]] findings::StepInput features_input() const {
+        Json samples = Json::list();
+        for (const std::string& pass : scene_.passes) {
+            samples.push_back(samples_of(pass));
+        }
+        return input({{"passes", scene_.passes},
+                      {"samples", std::move(samples)},
+                      {"objects", scene_.chart->choice.objects},
+                      {"lamps", scene_.chart->choice.is_lamps}});
     }
 
     [[nodiscard]] bool is_draft() const { return settings_.quality == findings::Quality::draft; }
@@ -215,14 +274,20 @@ class VariantSteps {
     render::PreparedScene& prepared() {
         if (!prepared_) {
             progress_(name_of("loading"), 0.0);
-            prepared_ = std::make_unique<render::PreparedScene>(setup_, render::PixelFilter{}, settings_.cache);
+            prepared_ = std::make_unique<render::PreparedScene>(setup_, render::PixelFilter{}, settings_.cache,
+                                                                render::integrator_named(scene_.paths));
         }
         return *prepared_;
     }
 
     const std::vector<render::Render>& renders() {
         if (renders_.empty()) {
-            renders_ = prepared().render(scene_.passes, settings_.seed, false);
+            if (setup_.chart) {
+                renders_.push_back(prepared().render(settings_.seed, false));
+                return renders_;
+            }
+            // A draft has too few samples for the search to pay that finds where ghosts come in.
+            renders_ = prepared().render(scene_.passes, settings_.seed, false, !is_draft());
         }
         return renders_;
     }
@@ -262,6 +327,11 @@ class VariantSteps {
 
 }  // namespace
 
+Estimate ratio(const Estimate& over, const Estimate& under) {
+    const double value = over.value / under.value;
+    return {value, std::hypot(over.standard_error, value * under.standard_error) / std::abs(under.value)};
+}
+
 Estimate VariantFindings::light(const std::string& pass) const {
     std::vector<Estimate> lights;
     for (const PassPicture& picture : passes) {
@@ -282,13 +352,26 @@ Estimate VariantFindings::ghost_energy(int surface, bool is_involved) const {
     return sum(energies);
 }
 
-double VariantFindings::noise() const {
-    const formats::Image picture = picture_of(passes);
-    double squares = 0.0;
-    for (const PassPicture& pass : passes) {
-        squares += pass.noise * pass.noise;
+std::optional<double> VariantFindings::noise() const {
+    constexpr double kSeen = 0.01;  // of white
+    if (!std::ranges::all_of(passes, [](const PassPicture& pass) { return !pass.error.pixels.empty(); })) {
+        return std::nullopt;
     }
-    return std::sqrt(squares) / median({picture.pixels.begin(), picture.pixels.end()});
+    const formats::Image picture = picture_of(passes);
+    std::vector<double> relative;
+    for (std::size_t i = 0; i < passes.front().error.pixels.size(); ++i) {
+        const float* rgb = picture.pixels.data() + 3 * i;
+        const double light = (rgb[0] + rgb[1] + rgb[2]) / 3.0;
+        if (light < kSeen) {
+            continue;
+        }
+        double square = 0.0;
+        for (const PassPicture& pass : passes) {
+            square += double{pass.error.pixels[i]} * pass.error.pixels[i];
+        }
+        relative.push_back(std::sqrt(square) / light);
+    }
+    return relative.empty() ? std::nullopt : std::optional(median(std::move(relative)));
 }
 
 formats::Image picture_of(const std::vector<PassPicture>& passes) {
@@ -317,6 +400,18 @@ VariantFindings render_variant(const StrayScene& scene, const StrayVariant& vari
     }
     if (scene.has_veiling_glare) {
         found.veiling_glare = steps.veiling_glare();
+    }
+    if (scene.has_streaks) {
+        const auto rgb = [&](const char* pass) -> const formats::Image& {
+            return std::ranges::find(found.passes, pass, &PassPicture::pass)->rgb;
+        };
+        found.streaks = streak_look(rgb("diffracted"), rgb("direct"), steps.sensor(), *variant.setup.camera.blades);
+    }
+    if (scene.growth_samples > 0) {
+        found.growth = steps.growth();
+    }
+    if (scene.chart) {
+        found.features = steps.features(found.passes);
     }
     if (scene.has_audit) {
         found.fates = steps.fates();

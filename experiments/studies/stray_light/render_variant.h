@@ -8,7 +8,10 @@
 #include "engine/base/json_archive.h"
 #include "engine/formats/image/image.h"
 #include "experiments/findings/study.h"
+#include "experiments/studies/stray_light/growing_picture.h"
+#include "experiments/studies/stray_light/power_law.h"
 #include "experiments/studies/stray_light/stray_scene.h"
+#include "experiments/studies/stray_light/streak_look.h"
 
 namespace lensproof::studies {
 
@@ -18,12 +21,17 @@ struct Estimate {
     double standard_error = 0.0;
 };
 
+/// Their errors are taken to be independent.
+Estimate ratio(const Estimate& over, const Estimate& under);
+
 /// What a pass makes.
 struct PassPicture {
     std::string pass;
     formats::Image rgb;  // linear, 1 = saturation
     Estimate light;      // the mean of R, G and B over the picture
-    double noise = 0.0;  // of a pixel's mean of R, G and B the standard error; the median over the picture
+    /// The standard error of each pixel's mean of R, G and B. No pixels where there are so few samples that it is not
+    /// known.
+    formats::Image error;
 };
 
 /// A ghost of two reflections.
@@ -34,17 +42,27 @@ struct GhostEnergy {
 
 struct VariantFindings {
     std::vector<PassPicture> passes;
-    std::vector<GhostEnergy> ghosts;                      // the strongest first, where they are asked for
-    std::optional<Estimate> veiling_glare;                // a share
+    std::vector<GhostEnergy> ghosts;        // the strongest first, where they are asked for
+    std::optional<Estimate> veiling_glare;  // a share
+    std::vector<ChartFeature> features;     // of the chart, where one is measured
+    std::optional<StreakLook> streaks;
+    std::vector<PictureGrowth> growth;
     std::vector<std::pair<std::string, Estimate>> fates;  // of the light that comes in, shares, by their names
 
     /// Of a pass, or of all together.
     [[nodiscard]] Estimate light(const std::string& pass) const;
-    /// Of a pixel of all together, over its light, both medians over the picture.
-    [[nodiscard]] double noise() const;
+    /// Of a pixel of all together, over its light: the median of those that show a hundredth of white or more. Nothing
+    /// where a pass's is not known, or there is no such pixel.
+    [[nodiscard]] std::optional<double> noise() const;
     /// Of the ghosts that the surface reflects, or of the others.
     [[nodiscard]] Estimate ghost_energy(int surface, bool is_involved) const;
 };
+
+/// The variants' features, for a chart that is measured.
+std::vector<VariantFeatures> features_of(const StrayScene& scene, const std::vector<VariantFindings>& variants);
+
+/// Of the sum's error over its time.
+PowerLaw growth_law(const std::vector<PictureGrowth>& growth);
 
 /// What all passes make together.
 formats::Image picture_of(const std::vector<PassPicture>& passes);

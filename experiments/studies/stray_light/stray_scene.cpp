@@ -37,9 +37,11 @@ StrayVariant read_variant(TomlTable& table, const TomlTable& scene, const StrayS
     const TomlTable whole = changed ? scene.overlaid(*changed) : scene;
     variant.setup = render::read_scene_setup(whole);
     render::expect_stated_exposure(variant.setup, scene.file());
-    if (variant.setup.chart) {
+    if (variant.setup.chart && owner.passes != std::vector<std::string>{"imaged"}) {
         throw InputError(
-            fmt::format("{}: is a [chart] in an even world, expected a scene with lights", scene.file().string()));
+            fmt::format("{}: is a [chart] in an even world, which has the pass imaged alone, expected a "
+                        "scene with lights, or passes = [\"imaged\"]",
+                        scene.file().string()));
     }
     variant.stated = whole.stated();
     file.add_subject(table, "name", fmt::format("{}-{}", owner.name, variant.name));
@@ -62,11 +64,32 @@ auto by_pass(TomlTable& table, const char* key, const std::vector<std::string>& 
     return found;
 }
 
+std::vector<std::string> variant_names(const StrayScene& scene) {
+    std::vector<std::string> names;
+    std::ranges::transform(scene.variants, std::back_inserter(names), &StrayVariant::name);
+    return names;
+}
+
+/// A picture of streaks tells of a lamp and of blades.
+void expect_streaks(const TomlTable& table, const StrayScene& scene) {
+    for (const char* pass : {"direct", "diffracted"}) {
+        if (std::ranges::count(scene.passes, pass) == 0) {
+            table.fail("streaks", fmt::format("are measured in light of the pass \"{}\", expected it in passes", pass));
+        }
+    }
+    for (const StrayVariant& variant : scene.variants) {
+        if (!variant.setup.camera.blades) {
+            table.fail("streaks", fmt::format("are those of blades, which \"{}\" has none of, expected blades in its "
+                                              "[camera]",
+                                              variant.name));
+        }
+    }
+}
+
 StrayCheck read_check(TomlTable& table, const StrayScene& scene) {
     std::vector<std::string> lights = scene.passes;
     lights.emplace_back(kPicture);
-    std::vector<std::string> variants;
-    std::ranges::transform(scene.variants, std::back_inserter(variants), &StrayVariant::name);
+    const std::vector<std::string> variants = variant_names(scene);
     StrayCheck check;
     if (table.has("light")) {
         check.pass = table.choice("light", lights);
@@ -112,6 +135,7 @@ StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
     if (scene.passes.empty()) {
         scene.passes = {"imaged", "direct", "ghosts"};
     }
+    scene.paths = table.has("paths") ? table.choice("paths", {"camera", "light", "both"}) : "camera";
     scene.samples_per_pixel =
         by_pass(table, "samples_per_pixel", scene.passes,
                 [](TomlTable& numbers, const std::string& pass) { return numbers.integer(pass, 1, 1 << 20); });
@@ -135,6 +159,15 @@ StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
     scene.ghosts_deg = table.optional_number("ghosts_deg", {.min = 0.0, .max = 89.9});
     scene.has_veiling_glare = table.boolean_or("veiling_glare", false);
     scene.has_audit = table.boolean_or("audit", false);
+    scene.has_streaks = table.boolean_or("streaks", false);
+    if (scene.has_streaks) {
+        expect_streaks(table, scene);
+    }
+    scene.growth_samples = table.integer_or("growth_samples", 0, 8, 1 << 20);
+    scene.noise_percent = table.optional_number("noise_percent", kPositive);
+    if (std::optional<TomlTable> chart = table.optional_table("chart")) {
+        scene.chart = read_measured_chart(*std::move(chart), variant_names(scene));
+    }
     for (TomlTable& check : table.tables("checks")) {
         scene.checks.push_back(read_check(check, scene));
     }

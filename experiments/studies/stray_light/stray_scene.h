@@ -9,6 +9,7 @@
 
 #include "engine/render/scene_setup.h"
 #include "experiments/findings/study.h"
+#include "experiments/studies/stray_light/measured_chart.h"
 
 namespace lensproof::studies {
 
@@ -43,6 +44,7 @@ struct StrayScene {
     std::string title;
     std::filesystem::path file;  // the scene's
     std::vector<std::string> passes;
+    std::string paths;                             // the integrator of those that go straight through the lens
     std::map<std::string, int> samples_per_pixel;  // of a pass, in place of the scene's
     std::map<std::string, double> brightening_ev;  // of a pass's picture
     std::vector<StrayVariant> variants;
@@ -51,6 +53,10 @@ struct StrayScene {
     std::optional<double> ghosts_deg;  // the field angle of a distant light whose ghosts are listed
     bool has_veiling_glare = false;
     bool has_audit = false;
+    std::optional<MeasuredChart> chart;  // of which features are measured in the pictures
+    bool has_streaks = false;            // are measured, of each variant's blades
+    int growth_samples = 0;  // a pixel and pass, up to which the picture is watched as it grows; 0: it is not
+    std::optional<double> noise_percent;  // of a pixel, the median, at most
     std::vector<StrayCheck> checks;
 };
 

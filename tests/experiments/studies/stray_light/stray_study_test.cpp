@@ -158,7 +158,7 @@ TEST_F(StrayStudy, FindsWhatTheVariantsChange) {
     }
     EXPECT_NEAR(mean, sum, 1e-5 * sum);
 
-    const findings::Findings found = stray_findings(read, variants);
+    const findings::Findings found = stray_findings(read, variants, findings::Quality::full);
     ASSERT_EQ(found.checks.size(), 4U);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(found.checks[i].verdict(), findings::Verdict::pass)
@@ -170,6 +170,41 @@ TEST_F(StrayStudy, FindsWhatTheVariantsChange) {
     EXPECT_TRUE(says(found.subjects[0].pictures.back().bytes, "Ghosts of two reflections"));
     EXPECT_EQ(found.subjects[1].pictures.size(), 4U);
     EXPECT_EQ(found.tables.at(0).second[0]["variants"].size(), 3U);
+}
+
+// What a lamp sends straight to the film is the same from either end of its paths, within four standard errors.
+TEST_F(StrayStudy, LampsAreSeenFromEitherEndOfTheirPaths) {
+    const auto direct = [&](const std::string& paths) {
+        findings::ExperimentFile experiment =
+            file("[[stray_light]]\nname = \"lamp\"\nscene = \"scene.toml\"\npasses = [\"direct\"]\npaths = \"" + paths +
+                 "\"\nvariants = [{ name = \"only\" }]\n");
+        const StrayScene read = read_stray_scene(experiment.top.tables("stray_light").at(0), experiment);
+        return render_variant(read, read.variants[0], {}, kSilent);
+    };
+    const VariantFindings camera = direct("camera");
+    const VariantFindings light = direct("light");
+    const Estimate ours = camera.light("direct");
+    const Estimate theirs = light.light("direct");
+    EXPECT_NEAR(ours.value, theirs.value, 4.0 * std::hypot(ours.standard_error, theirs.standard_error));
+    EXPECT_LT(theirs.standard_error, 0.1 * theirs.value);
+    EXPECT_TRUE(camera.noise().has_value());
+    EXPECT_TRUE(says(complaint("[[stray_light]]\nname = \"a\"\nscene = \"scene.toml\"\npaths = \"both ways\"\n"),
+                     "paths: is \"both ways\", expected one of: camera, light, both"));
+}
+
+// Each sample makes the picture better: its error falls as a power, with the root of their number or nearly so.
+TEST_F(StrayStudy, PicturesGrow) {
+    findings::ExperimentFile experiment = file(
+        "[[stray_light]]\nname = \"lamp\"\nscene = \"scene.toml\"\npasses = [\"imaged\"]\ngrowth_samples = 64\n"
+        "variants = [{ name = \"only\", scene.camera.pixels = [96, 64] }]\n");
+    const StrayScene read = read_stray_scene(experiment.top.tables("stray_light").at(0), experiment);
+    const VariantFindings found = render_variant(read, read.variants[0], {}, kSilent);
+    ASSERT_EQ(found.growth.size(), 6U);
+    EXPECT_EQ(found.growth.back().samples, 32);
+    EXPECT_EQ(found.growth[0].pass_errors.size(), 1U);
+    const PowerLaw law = growth_law(found.growth);
+    EXPECT_LT(law.exponent, -0.3);
+    EXPECT_GT(law.exponent, -1.0);
 }
 
 }  // namespace lensproof::studies::stray_study_test
