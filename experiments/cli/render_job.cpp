@@ -238,10 +238,8 @@ render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options
     return notes;
 }
 
-/// The picture as far as it is, beside the checkpoint: no shard, as it lacks samples. That it cannot be written is
-/// said.
+/// The picture as far as it is, beside the checkpoint. That it cannot be written is said.
 Json write_so_far(States passes, render::FilmNotes notes, const fs::path& checkpoint) {
-    notes.metadata.erase(kShardNote);
     notes.metadata["lensproof:interruptedAfter"] = fmt::format("{:.1f} samples a pixel", mean_samples(passes.front()));
     const render::Picture picture = render::picture_of(passes);
     const std::string exr = checkpoint.string() + ".exr";
@@ -274,7 +272,9 @@ int end_early(Json json, States passes, const render::FilmNotes& notes, const Re
     json["samples_per_pixel"] = mean_samples(passes.front());
     json["seed"] = options.common.seed;
     json["checkpoint"] = delivery.place.string();
-    json["so_far"] = write_so_far(passes, notes, delivery.place);
+    if (options.shard.empty()) {  // nobody looks at a shard's, and whoever ends one has little time
+        json["so_far"] = write_so_far(passes, notes, delivery.place);
+    }
     write_json_result(options.common, json);
     return kInternalFailure;
 }

@@ -165,6 +165,21 @@ TEST(RenderGrowth, AnInterruptedRenderSaysSoInItsJson) {
               fmt::format("{:.1f} samples a pixel", result["samples_per_pixel"].get<double>()));
 }
 
+// Whoever ends a shard, a queue say, has little time, and nobody looks at a part's picture.
+TEST(RenderGrowth, AnInterruptedShardLeavesItsCheckpointAlone) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    RunningProgram program(
+        {"render", "scene.toml", "--spp", "1000000", "--shard", "1/2", "-o", "part.exr", "--preview", "now.png"},
+        place.path());
+    wait_for(place.path() / "now.png", program);
+    program.send(SIGTERM);
+    EXPECT_EQ(program.wait(), 3);
+    EXPECT_TRUE(place.has("part.exr.checkpoint"));
+    EXPECT_FALSE(place.has("part.exr.checkpoint.exr"));
+    EXPECT_FALSE(place.has("part.exr.checkpoint.png"));
+}
+
 // A flat field, where all tiles are alike: the error that was asked for, and less where less was.
 TEST(RenderGrowth, EndsWhereTheNoiseIsLow) {
     const Workplace place;
