@@ -32,8 +32,14 @@ from collections.abc import Callable, Iterable, Sequence
 UNUSABLE_INPUT = 2  # an exit status: another try comes to the same
 SECONDS_OF_A_SHARD = 5.0  # of an experiment's steps, about
 
-CALM = {"distributed.worker.profile.interval": "10s", "distributed.admin.tick.interval": "1s"}
-"""For Dask's processes, whose tasks here take seconds: each looks at what it does a hundred times a second otherwise."""
+CALM = {
+    "distributed.admin.system-monitor.interval": "10s",
+    "distributed.admin.tick.interval": "1s",
+    "distributed.scheduler.work-stealing-interval": "1s",
+    "distributed.worker.memory.monitor-interval": "5s",
+    "distributed.worker.profile.interval": "10s",
+}
+"""For Dask's processes, whose tasks here take seconds: each looks at itself up to a hundred times a second otherwise."""
 
 
 class TaskFailed(Exception):
