@@ -5,6 +5,7 @@ A `LocalCluster` of two workers; one task in ten has its worker killed under it.
 shards have when nobody dies. With LENSPROOF_ALL_TRIALS=1 64 shards and a hundred settings, else fewer. Exits with 77,
 which counts as skipped, where Dask's `distributed` is not installed.
 """
+import contextlib
 import json
 import os
 import pathlib
@@ -13,7 +14,9 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import unittest
+import unittest.mock
 
 try:
     import distributed
@@ -30,7 +33,7 @@ package = str(SOURCE / "experiments/python/lensproof")
 sys.path.insert(0, package)
 os.environ["PYTHONPATH"] = package
 import cluster  # noqa: E402
-from common import ALL_TRIALS, Killer, settings  # noqa: E402
+from common import ALL_TRIALS, Killer, settings, snippets  # noqa: E402
 
 SHARDS = 64 if ALL_TRIALS else 16
 SIDE = 10 if ALL_TRIALS else 4
@@ -171,6 +174,25 @@ class Cluster(unittest.TestCase):
         subprocess.run(command, cwd=self.folder, env=environment, check=True)
         self.assertTrue((self.folder / "array.part-1.exr").exists())
         self.assertEqual(list(self.folder.glob("array*.checkpoint*")), [])
+
+    def test_what_the_page_shows(self):
+        place = self.folder / "page"
+        place.mkdir()
+        (place / "scene.toml").write_text(SCENE)
+        for name in ("one", "two"):
+            (place / f"{name}.toml").write_text(settings(2))
+        shown = next(snippet for snippet in snippets(SOURCE) if "import Client" in snippet)
+        around = types.ModuleType("lensproof")
+        around.cluster = cluster
+        space = {}
+        shown = shown.replace("tcp://scheduler:8786", self.local.scheduler_address).replace("shards=64", f"shards={SHARDS}")
+        with contextlib.chdir(place), unittest.mock.patch.dict(sys.modules, lensproof=around):
+            exec(shown, space)
+        space["client"].close()
+        self.assertEqual(sorted(file.name for file in place.iterdir()),
+                         ["one.toml", "output", "picture.exr", "picture.png", "scene.toml", "sweep", "two.toml"])
+        self.assertEqual([round(answer["paraxial"]["f_number"], 9) for answer in space["answers"]], [2.8, 4, 5.6, 8])
+        self.assertEqual(sorted(file.name for file in (place / "output").iterdir()), ["one", "two"])
 
     def test_the_command_line(self):
         status = cluster.main(["render", str(self.folder / "scene.toml"), "-o", str(self.folder / "two.exr"), "--shards",

@@ -1,11 +1,17 @@
 """What the tests of many machines share: work, and what befalls its workers."""
 import os
 import random
+import re
 import signal
 import threading
 
 
 ALL_TRIALS = "LENSPROOF_ALL_TRIALS" in os.environ  # sizes that studies have; every day's are smaller
+
+
+def snippets(source):
+    """What experiments/many_machines.md shows between its fences."""
+    return re.findall(r"```\n(.*?)```", (source / "experiments/many_machines.md").read_text(), re.DOTALL)
 
 
 def kill_process(client, worker):

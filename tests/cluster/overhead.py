@@ -25,7 +25,7 @@ arguments = argparse.ArgumentParser()
 arguments.add_argument("program", type=pathlib.Path)
 arguments.add_argument("source", type=pathlib.Path)
 arguments.add_argument("--shards", type=int, default=64)
-arguments.add_argument("--spp", type=int, default=64 * 1024)
+arguments.add_argument("--spp", type=int, default=4096)
 sys.dont_write_bytecode = True
 PR_SET_CHILD_SUBREAPER = 36
 # Of each of the hundred settings, what takes a moment.

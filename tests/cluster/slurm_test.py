@@ -2,8 +2,9 @@
 """slurm_test.py PROGRAM SOURCE — a render on a real Slurm whose tasks are killed, preempted, out of time.
 
 Starts Debian's munged, slurmctld and slurmd (packages slurmctld, slurmd, slurm-client, munge) in a folder of their own:
-one node, this machine. Renders by experiments/render_array.sbatch, kills one task in ten, and by the workers that
-dask-jobqueue starts where that is installed. Each picture has the bytes of the same shards done one after the other.
+one node, this machine. Does there what experiments/many_machines.md shows, kills one task in ten, and renders by the
+workers that dask-jobqueue starts where that is installed. Each picture has the bytes of the same shards done one after
+the other.
 Exits with 77, which counts as skipped, where Slurm is not installed, and unless LENSPROOF_ALL_TRIALS is set: it takes
 minutes.
 """
@@ -24,7 +25,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 PROGRAM, SOURCE = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
-SHARDS = 64
+SHARDS = 64  # as on the page
 TOOLS = ["munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue", "sinfo"]
 os.environ["PATH"] += ":/usr/sbin:/sbin"
 if "LENSPROOF_ALL_TRIALS" not in os.environ:
@@ -37,7 +38,7 @@ PACKAGE = str(SOURCE / "experiments/python/lensproof")
 os.environ.update(LENSPROOF_PROGRAM=str(PROGRAM), LENSPROOF_CACHE="off", LENSPROOF_HOME=str(SOURCE), PYTHONPATH=PACKAGE)
 sys.path.insert(0, PACKAGE)
 import cluster  # noqa: E402
-from common import Killer, settings  # noqa: E402
+from common import Killer, settings, snippets  # noqa: E402
 
 CONFIGURATION = """
 ClusterName=lensproof
@@ -97,6 +98,7 @@ class Slurm(unittest.TestCase):
             (folder / name).mkdir()
         folder.chmod(0o755)  # munged wants to be found
         (folder / "tools/lensproof").symlink_to(PROGRAM)
+        (folder / "experiments").symlink_to(SOURCE / "experiments")
         (folder / "munge.key").write_bytes(os.urandom(1024))
         (folder / "munge.key").chmod(0o600)
         os.environ.update(SLURM_CONF=str(folder / "slurm.conf"), PATH=f"{folder}/tools:{os.environ['PATH']}")
@@ -115,7 +117,7 @@ class Slurm(unittest.TestCase):
         text = (SOURCE / "experiments/scenes/tessar_checkerboard.toml").read_text()
         cls.scene = folder / "scene.toml"
         cls.scene.write_text(text.replace("pixels = [720, 540]", "pixels = [240, 180]"))
-        cls.options = ["--spp", str(64 * SHARDS), "--threads", "1"]
+        cls.options = ["--spp", "4096", "--threads", "1"]
 
     def merged(self, parts):
         """The bytes of the picture that is made of them all at once."""
@@ -133,10 +135,21 @@ class Slurm(unittest.TestCase):
     def setUp(self):
         os.chdir(self.folder)
 
+    def shown(self, words, more=""):
+        """Does what the page shows with these words, with more options of its render."""
+        script = next(snippet for snippet in snippets(SOURCE) if "sbatch" in snippet and words in snippet)
+        output("bash", "-euc", script.replace("--spp 4096", f"--spp 4096 {more}"))
+
     def rendering(self):
         """The array's processes that render: their ids."""
-        found = subprocess.run(["pgrep", "-f", f"^lensproof render {self.folder}.*--shard"], capture_output=True, text=True)
-        return [int(word) for word in found.stdout.split()]
+        found = subprocess.run(["pgrep", "-f", "^lensproof render.*--shard"], capture_output=True, text=True)
+        return [int(process) for process in found.stdout.split() if self.is_here(process)]
+
+    def is_here(self, process):
+        try:
+            return os.readlink(f"/proc/{process}/cwd") == str(self.folder)
+        except OSError:
+            return False  # it has ended
 
     def hurry(self):
         """Who is queued again waits two minutes, for all that is left of it to end. Here that takes no four seconds."""
@@ -148,15 +161,11 @@ class Slurm(unittest.TestCase):
                 subprocess.run(["scontrol", "update", f"JobId={job}", "StartTime=now+4"], capture_output=True)
 
     def test_an_array_has_the_same_bytes_whoever_dies(self):
-        script = SOURCE / "experiments/render_array.sbatch"
-        array = output("sbatch", "--parsable", f"--array=1-{SHARDS}", script, self.scene, "picture.exr", *self.options,
-                       "--checkpoint-interval", "0.1").strip()
-        merge = output("sbatch", "--parsable", f"--dependency=afterok:{array}", "--wrap",
-                       "lensproof merge picture.part-*.exr -o picture.exr --quiet").strip()
+        self.shown("render_array.sbatch", "--checkpoint-interval 0.1")
         chance = random.Random(1)
         ends = ["kill"] * max(1, SHARDS // 10) + ["walltime", "preemption"]
         deadline = time.monotonic() + 900
-        while output("squeue", "-h", "-j", f"{array},{merge}").strip():
+        while output("squeue", "-h").strip():
             self.assertLess(time.monotonic(), deadline, output("squeue"))
             if ends and (rendering := self.rendering()):
                 victim = chance.choice(rendering)
@@ -179,17 +188,15 @@ class Slurm(unittest.TestCase):
         self.assertEqual(len(list(self.folder.glob("picture.part-*.exr"))), SHARDS)
 
     def test_a_sweep_is_shared_out_and_its_report_has_the_same_bytes_whoever_dies(self):
-        experiment = self.folder / "sweep.toml"
-        experiment.write_text(settings(10))
-        steps = output("sbatch", "--parsable", "--requeue", "--array=1-10", "--wrap",
-                       "lensproof run sweep.toml -o sweep --shard $SLURM_ARRAY_TASK_ID/10 --threads 1").strip()
-        report = output("sbatch", "--parsable", f"--dependency=afterany:{steps}", "--wrap",
-                        "lensproof run sweep.toml -o sweep").strip()
-        output("scancel", f"{steps}_7")  # whatever it had done: the report's run does the rest
-        wait_for(lambda: not output("squeue", "-h", "-j", f"{steps},{report}").strip())
-        output(PROGRAM, "run", experiment, "-o", "alone", "--quiet")
+        (self.folder / "sweep.toml").write_text(settings(10))
+        self.shown("--dependency=afterany")
+        tasks = [job for job in output("squeue", "-h", "-r", "-o", "%i").split() if "_" in job]
+        output("scancel", tasks[6])  # the report's run does what is not done
+        wait_for(lambda: not output("squeue", "-h").strip())
+        output(PROGRAM, "run", "sweep.toml", "-o", "alone", "--quiet")
         for name in ("report.json", "report.html"):
-            self.assertEqual((self.folder / "sweep" / name).read_bytes(), (self.folder / "alone" / name).read_bytes())
+            self.assertEqual((self.folder / "output/sweep" / name).read_bytes(),
+                             (self.folder / "alone" / name).read_bytes())
 
     @unittest.skipUnless(importlib.util.find_spec("dask_jobqueue"), "dask-jobqueue (PyPI's) is not here")
     def test_dask_has_its_workers_from_slurm(self):
