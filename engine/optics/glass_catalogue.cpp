@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/infinity.h"
 #include "engine/base/nearest_name.h"
 #include "engine/base/text.h"
 #include "engine/optics/glass_name.h"
@@ -64,7 +65,14 @@ const Glass* preferred(const Found& found, std::span<const std::string> catalogu
     return found.front();
 }
 
+bool is_of_the_visible(const Glass& glass) {
+    return covers(glass, spectral::kLineF) && covers(glass, spectral::kLineC);
+}
+
 std::string figures(const Glass& glass) {
+    if (!is_of_the_visible(glass)) {
+        return fmt::format("{:.0f} to {:.0f} nm", glass.min_wavelength_nm, glass.max_wavelength_nm);
+    }
     return fmt::format("n_d {:.5f}, V_d {:.2f}", refractive_index(glass.formula, spectral::kLineD),
                        abbe_number(glass.formula));
 }
@@ -95,6 +103,9 @@ bool is_prefixed(std::string_view longer, std::string_view shorter) {
 }
 
 double distance(const Glass& glass, double n_d, double V_d) {
+    if (!is_of_the_visible(glass)) {
+        return kInfinity;
+    }
     return std::hypot(refractive_index(glass.formula, spectral::kLineD) - n_d,
                       std::log(abbe_number(glass.formula) / V_d));
 }

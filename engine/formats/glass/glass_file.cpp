@@ -59,6 +59,12 @@ optics::DispersionFormula read_formula(const CsvRow& row) {
         std::ranges::copy(c, polynomial.a.begin());
         return polynomial;
     }
+    if (formula == "herzberger") {
+        expect(c.size() == 6, "the six numbers A to F");
+        optics::Herzberger herzberger;
+        std::ranges::copy(c, herzberger.a.begin());
+        return herzberger;
+    }
     if (formula == "power-series") {
         expect(pairs, "pairs of a coefficient and an exponent");
         return optics::SquaredPowerSeries{power_terms(c)};
