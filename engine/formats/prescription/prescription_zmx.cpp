@@ -277,12 +277,24 @@ void read_configurations(const ZmxFile& file, const std::vector<optics::Prescrib
     }
 }
 
+/// A lens whose light leaves parallel has its image at infinity, where no sensor is: none is stated.
+void take_image_from_infinity(ZmxFile& file, Remarks& remarks) {
+    const int last = static_cast<int>(file.surfaces.size()) - 2;
+    if (last > 0 && std::isinf(file.surfaces[last].thickness)) {
+        file.surfaces[last].thickness = 0.0;
+        remarks.add("image-at-infinity", optics::Severity::info, last,
+                    fmt::format("line {}: the image lies at infinity; the table is taken as stating no image plane",
+                                file.surfaces[last].line));
+    }
+}
+
 }  // namespace
 
 optics::Prescription parse_zmx(const std::string& text, const std::filesystem::path& file) {
     Remarks remarks;
     ZmxFile zmx = read_zmx_file(to_utf8(text), file, remarks);
     choose_stop(zmx, remarks);
+    take_image_from_infinity(zmx, remarks);
     optics::Prescription prescription = prescription_of(file);
     read_names(zmx, prescription);
     const int image = static_cast<int>(zmx.surfaces.size()) - 1;

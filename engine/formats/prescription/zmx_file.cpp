@@ -226,7 +226,9 @@ class ZmxReader {
     }
 
     void read_apodization() {
-        if (here_.number_or_zero(0) != 0.0) {
+        // Types: 0 none, 1 a Gaussian, which of factor 0 is none, 2 a cosine's cube.
+        const double type = here_.number_or_zero(0);
+        if (type != 0.0 && !(type == 1.0 && here_.number_or_zero(1) == 0.0)) {
             remarks_.not_understood("GFAC", 0, here_.line, "the pupil's apodization");
         }
     }

@@ -164,6 +164,23 @@ TEST(Zmx, SaysWhatTheHeadMeans) {
     EXPECT_FALSE(lens.surfaces.at(1).semi_diameter_mm);
 }
 
+// A drum lens of a catalogue: its light leaves parallel, so its image plane lies at infinity, where no sensor is.
+TEST(Zmx, AnImageAtInfinityIsNoDistance) {
+    const optics::Prescription lens =
+        parse(kHead + kObject + kStop + surf(2, "  CURV 0.8\r\n  DISZ INFINITY\r\n") + surf(3, "  DISZ 0\r\n"));
+    ASSERT_EQ(lens.surfaces.size(), 2U);
+    EXPECT_EQ(lens.surfaces[1].thickness_mm, 0.0);
+    EXPECT_TRUE(has_finding(lens, "image-at-infinity", "the image lies at infinity"));
+}
+
+// A Gaussian of factor 0 is an even pupil.
+TEST(Zmx, AnApodizationOfNothingIsNone) {
+    const std::string rest = kObject + kStop + surf(2, "  CURV 0.1\r\n  DISZ 9\r\n") + surf(3, "  DISZ 0\r\n");
+    EXPECT_FALSE(has_finding(parse(kHead + "GFAC 0 0\r\n" + rest), "not-understood", "GFAC"));
+    EXPECT_FALSE(has_finding(parse(kHead + "GFAC 1 0\r\n" + rest), "not-understood", "GFAC"));
+    EXPECT_TRUE(has_finding(parse(kHead + "GFAC 1 1\r\n" + rest), "not-understood", "GFAC"));
+}
+
 TEST(Zmx, NamesWhatItDoesNotUnderstand) {
     const optics::Prescription lens =
         parse(kHead + "WHAT 3\r\n" + kObject +
