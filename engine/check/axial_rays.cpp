@@ -68,7 +68,8 @@ void report_real_f_number(const CheckedLens& checked, const AxialBeam& beam, Fin
     const double real = 0.5 / beam.exit_sine;
     const double paraxial = paraxial_beam(checked).f_number;
     constexpr double kWorthSaying = 0.02;
-    if (beam.height > 0.0 && std::isfinite(real) && std::abs(real / paraxial - 1.0) > kWorthSaying) {
+    if (beam.height > 0.0 && !checked.collimates() && std::isfinite(real) &&
+        std::abs(real / paraxial - 1.0) > kWorthSaying) {
         findings.push_back(
             {"real-f-number", info, 0,
              fmt::format("the axial beam's real f-number is {:.3f}, the paraxial one {:.3f}", real, paraxial), real,
@@ -76,9 +77,15 @@ void report_real_f_number(const CheckedLens& checked, const AxialBeam& beam, Fin
     }
 }
 
+bool is_spherical(const CheckedLens& checked) {
+    return std::ranges::none_of(checked.prescription.surfaces, [](const optics::PrescribedSurface& row) {
+        return row.is_asphere() || row.conic != 0.0;
+    });
+}
+
 /// A number that is wrong mostly shows in the image before anything else: rays that should meet do not.
 void check_blur(const CheckedLens& checked, const AxialBeam& beam, Findings& findings) {
-    if (beam.height <= 0.0) {
+    if (beam.height <= 0.0 || checked.collimates()) {
         return;
     }
     const AxialSpread spread = axial_spread(checked, beam.height);
@@ -90,10 +97,11 @@ void check_blur(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
                              ? bound
                              : 2.0 * optics::projected_radius(projection, 90.0 * kDegree) * bound;
     if (blur > limit) {
-        findings.push_back({"blur", warning, 0,
+        const bool is_natural = checked.is_single_element() && is_spherical(checked);
+        findings.push_back({"blur", is_natural ? info : warning, 0,
                             fmt::format("the axial beam does not come to a focus: at its best its rays lie {:.2g} % of "
-                                        "the focal length apart (rms)",
-                                        100.0 * blur),
+                                        "the focal length apart (rms){}",
+                                        100.0 * blur, is_natural ? ", as those of a single spherical element do" : ""),
                             100.0 * blur, 100.0 * limit, "%"});
     }
 }
@@ -117,11 +125,12 @@ void check_axial_colour(const CheckedLens& checked, Findings& findings) {
     };
     const double apart = (focus_at(spectral::kLineF) - focus_at(spectral::kLineC)) / checked.focus->efl;
     if (std::abs(apart) > kAxialColour) {
-        findings.push_back({"axial-colour", warning, 0,
-                            fmt::format("blue (F) and red (C) focus {:.2g} % of the focal length apart: not a "
-                                        "colour-corrected lens, or a glass is wrong",
-                                        100.0 * apart),
-                            100.0 * apart, 100.0 * kAxialColour, "%"});
+        const bool is_natural = checked.is_single_element();
+        findings.push_back(
+            {"axial-colour", is_natural ? info : warning, 0,
+             fmt::format("blue (F) and red (C) focus {:.2g} % of the focal length apart: {}", 100.0 * apart,
+                         is_natural ? "a single element's colour" : "not a colour-corrected lens, or a glass is wrong"),
+             100.0 * apart, 100.0 * kAxialColour, "%"});
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
+#include "engine/check/rays.h"
 
 namespace lensproof::check {
 
@@ -114,9 +115,33 @@ bool CheckedLens::has_virtual_image() const {
     if (!focus || !std::isfinite(focus->efl)) {
         return false;
     }
-    const double stated = headings.back() * row(size() - 1).thickness_mm;
+    const double stated = stated_image_distance();
     const double image = headings.back() * focus->image_distance;
-    return stated < 0.0 && image < 0.0 && std::abs(stated - image) < kSamePlace * std::abs(focus->efl);
+    return stated < 0.0 && image < 0.0 &&
+           (is_at_best_focus || std::abs(stated - image) < kSamePlace * std::abs(focus->efl));
+}
+
+bool CheckedLens::collimates() const {
+    constexpr double kFar = 1e3;  // focal lengths
+    return focus && std::isfinite(prescription.object_distance_mm) &&
+           !(std::abs(focus->image_distance) < kFar * std::abs(focus->efl));
+}
+
+bool CheckedLens::is_single_element() const {
+    int elements = 0;
+    for (int i = 0; i < size(); ++i) {
+        const bool has_power = !row(i).is_flat() || (i + 1 < size() && !row(i + 1).is_flat());
+        elements += row(i).is_mirror || (is_glass_behind(i) && has_power) ? 1 : 0;
+    }
+    return elements == 1 && !prescription.has_thin_elements();
+}
+
+int CheckedLens::leading_dummies() const {
+    int count = 0;
+    while (count + 1 < size() && is_dummy(count) && !row(count).is_stop) {
+        ++count;
+    }
+    return count;
 }
 
 CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const optics::StatedData& claims,
@@ -162,6 +187,7 @@ CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const
         checked.semi_diameters.push_back(row.semi_diameter_mm.value_or(row.rim_mm.value_or(estimate)));
         checked.is_estimated.push_back(!is_stated);
     }
+    checked.is_at_best_focus = stands_at_best_focus(checked);
     return checked;
 }
 

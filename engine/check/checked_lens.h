@@ -53,6 +53,7 @@ struct CheckedLens {
     std::optional<optics::ParaxialData> paraxial;
     std::string why_not_traced;       // in make_lens's words
     std::optional<int> assumed_stop;  // the surface (from 0) that stands in for a stop that is missing or doubled
+    bool is_at_best_focus = false;    // the last thickness ends where real axial rays are sharpest, not paraxial ones
 
     [[nodiscard]] int size() const { return static_cast<int>(prescription.surfaces.size()); }
     [[nodiscard]] const optics::PrescribedSurface& row(int i) const { return prescription.surfaces[i]; }
@@ -61,9 +62,18 @@ struct CheckedLens {
     }
     /// Whether light passes the surface unchanged: a stop's plane, or a dummy.
     [[nodiscard]] bool is_dummy(int i) const;
+    /// From the last vertex to the sensor, in the light's direction.
+    [[nodiscard]] double stated_image_distance() const { return headings.back() * row(size() - 1).thickness_mm; }
     /// Whether the table means a diverging lens: it puts the image plane in front of the last surface, where the
     /// virtual image lies.
     [[nodiscard]] bool has_virtual_image() const;
+    /// Whether light of the object leaves the lens parallel: the image plane is then no image's.
+    [[nodiscard]] bool collimates() const;
+    /// One lens of glass, with windows perhaps, or one mirror: neither its colour nor, with spheres, its spherical
+    /// aberration can be corrected, so what it has of them says nothing about its table.
+    [[nodiscard]] bool is_single_element() const;
+    /// How many surfaces in front change nothing; the object's distance is to be counted from the next.
+    [[nodiscard]] int leading_dummies() const;
     /// Behind the surface, or in front of the first: the index.
     [[nodiscard]] double index_before(int i) const { return i == 0 ? table.index_in_front : table.index[i - 1]; }
 };

@@ -195,6 +195,17 @@ void check_one_diameter(const CheckedLens& checked, int i, Findings& findings) {
     }
 }
 
+/// Whether a design program's file states, beside the rims, the aperture that they make.
+bool has_stated_aperture(const CheckedLens& checked) {
+    constexpr double kSame = 0.1;
+    const optics::SystemAperture& aperture = checked.prescription.aperture;
+    const auto is_met = [&](optics::ApertureKind kind, double computed) {
+        return aperture.kind == kind && std::abs(std::abs(computed) / aperture.value - 1.0) < kSame;
+    };
+    return is_met(optics::ApertureKind::entrance_pupil_diameter, checked.paraxial->entrance_pupil_diameter) ||
+           is_met(optics::ApertureKind::f_number, checked.paraxial->f_number);
+}
+
 /// What no lens's speed is.
 void check_speed(const CheckedLens& checked, Findings& findings) {
     if (!checked.paraxial || checked.assumed_stop) {
@@ -208,7 +219,7 @@ void check_speed(const CheckedLens& checked, Findings& findings) {
                          "semi-diameters?",
                          f_number),
              f_number, kFastest);
-    } else if (f_number > kSlowest && std::isfinite(f_number)) {
+    } else if (f_number > kSlowest && std::isfinite(f_number) && !has_stated_aperture(checked)) {
         warn(findings, "f-number", stop,
              fmt::format("the table's f-number is {:.3g}, slower than any lens is wide open: semi-diameters in inches "
                          "or cm?",

@@ -33,6 +33,7 @@ constexpr double kThickestCoverGlass = 4.2;
 constexpr double kSameFocalLength = 1e-3;  // the lens itself is as stated
 constexpr double kSameDistance = 5e-4;     // of the focal length: a slip that explains a distance meets it so well
 constexpr Limits kFNumber{.error = 0.10, .warning = 0.05};  // rule 22
+constexpr double kLeastClearAperture = 0.6;                 // of the beam that is stated; below it is another lens's
 constexpr Limits kTrack{.error = 1e9, .warning = 0.005};    // rule 30
 constexpr double kPetzvalWarning = 1.0;                     // focal lengths, rule 31
 constexpr double kInvariantError = 1e-12;                   // relative, rule 32
@@ -53,11 +54,16 @@ void check_power(const CheckedLens& checked, Findings& findings) {
         findings.push_back({"no-power", error, 0, "the lens has no power: it images nothing", focus.efl, 0.0, "mm"});
         return;
     }
-    if (checked.has_virtual_image()) {
+    if (checked.collimates()) {
+        findings.push_back({"collimated", info, checked.size(),
+                            "light of the object leaves the lens parallel: where the table ends is no image's place",
+                            focus.image_distance, kNaN, "mm"});
+    } else if (checked.has_virtual_image()) {
         findings.push_back({"virtual-image", info, checked.size(),
                             fmt::format("a diverging lens (focal length {:.4f} mm): its image is virtual, {:.4f} mm in "
-                                        "front of the last surface, where the table puts the image plane",
-                                        focus.efl, std::abs(focus.image_distance)),
+                                        "front of the last surface, {} the table puts the image plane",
+                                        focus.efl, std::abs(focus.image_distance),
+                                        checked.is_at_best_focus ? "near which, at a best focus," : "where"),
                             focus.image_distance, kNaN, "mm"});
     } else if (focus.efl < 0.0) {
         findings.push_back(
@@ -119,18 +125,6 @@ void check_back_focus(const CheckedLens& checked, std::string_view what, const C
     }
 }
 
-/// Whether a plane this far behind the last surface is where real axial rays are sharpest, to a quarter of the way
-/// there from the paraxial image: then it is where a designer puts the sensor. A digit's slip seldom meets it.
-bool is_best_focus(const CheckedLens& checked, double last) {
-    if (!checked.traced || !checked.prescription.is_rotationally_symmetric()) {
-        return false;
-    }
-    const AxialSpread spread = axial_spread(checked, axial_beam(checked).height);
-    constexpr double kNear = 0.1;
-    const double best = spread.best_z();
-    return spread.tt > 0.0 && std::abs(last - best) <= kNear * std::abs(checked.focus->image_distance - best);
-}
-
 /// Rules 19 and 20. The last thickness is a claim too: where the sensor stands.
 void check_focal_lengths(const CheckedLens& checked, Findings& findings) {
     const Focus& focus = *checked.focus;
@@ -144,13 +138,13 @@ void check_focal_lengths(const CheckedLens& checked, Findings& findings) {
     if (claims.bfl_mm) {
         check_back_focus(checked, "the back focus (mm)", {heading * focus.bfl, *claims.bfl_mm, scale}, 0, findings);
     }
-    const double last = heading * checked.row(checked.size() - 1).thickness_mm;
+    const double last = checked.stated_image_distance();
     const bool repeats = claims.bfl_mm && std::abs(*claims.bfl_mm - last) < 1e-9;
-    if (last > 0.0 && !repeats) {
+    if (last > 0.0 && !repeats && !checked.collimates()) {
         const std::size_t count = findings.size();
         check_back_focus(checked, "the image's distance from the last surface (mm, last thickness)",
                          {heading * focus.image_distance, last, scale}, checked.size(), findings);
-        if (findings.size() > count && findings.back().code == "back-focus" && is_best_focus(checked, heading * last)) {
+        if (findings.size() > count && findings.back().code == "back-focus" && checked.is_at_best_focus) {
             findings.back().severity = info;
             findings.back().message += "; real rays of the axial beam are sharpest there: a best focus";
         }
@@ -159,7 +153,7 @@ void check_focal_lengths(const CheckedLens& checked, Findings& findings) {
 
 /// Rule 30.
 void check_track(const CheckedLens& checked, Findings& findings) {
-    const double last = checked.headings.back() * checked.row(checked.size() - 1).thickness_mm;
+    const double last = checked.stated_image_distance();
     if (const std::optional<double>& track = checked.claims.total_track_mm; track && last > 0.0) {
         compare(findings, "total-track", "the length from first vertex to sensor (mm)",
                 {lens_length(checked) + last, *track, *track}, kTrack);
@@ -185,6 +179,18 @@ void check_petzval(const CheckedLens& checked, Findings& findings) {
     }
 }
 
+/// Whether the stop is a surface of an element whose other surface is as wide: stock lenses are stated with the beam
+/// that would fill their glass, and with its clear aperture as the rims of both surfaces. A slip is in one of them.
+bool is_clear_aperture(const CheckedLens& checked, int stop) {
+    constexpr double kAlike = 1e-3;
+    const auto is_as_wide = [&](int other) {
+        return !checked.is_estimated[other] &&
+               std::abs(checked.semi_diameters[other] / checked.semi_diameters[stop] - 1.0) < kAlike;
+    };
+    return (stop + 1 < checked.size() && checked.is_glass_behind(stop) && is_as_wide(stop + 1)) ||
+           (stop > 0 && checked.is_glass_behind(stop - 1) && is_as_wide(stop - 1));
+}
+
 /// Rule 22, and the entrance pupil where a design program states that.
 void check_aperture(const CheckedLens& checked, Findings& findings) {
     const optics::ParaxialData& data = *checked.paraxial;
@@ -204,8 +210,14 @@ void check_aperture(const CheckedLens& checked, Findings& findings) {
     }
     if (const auto diameter =
             stated_as(optics::ApertureKind::entrance_pupil_diameter, checked.claims.entrance_pupil_diameter_mm)) {
+        const std::size_t count = findings.size();
         compare(findings, "entrance-pupil", "the entrance pupil's diameter (mm)",
                 {data.entrance_pupil_diameter, *diameter, *diameter}, kFNumber, stop + 1);
+        const double share = data.entrance_pupil_diameter / *diameter;
+        if (findings.size() > count && share < 1.0 && share > kLeastClearAperture && is_clear_aperture(checked, stop)) {
+            findings.back().severity = info;
+            findings.back().message += "; it is the element's clear aperture, which both of its surfaces have";
+        }
     }
 }
 

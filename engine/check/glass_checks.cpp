@@ -39,9 +39,12 @@ std::string medium_in_words(const optics::StatedMedium& medium) {
 void check_index_range(const CheckedLens& checked, int i, Findings& findings) {
     const double index = std::abs(checked.table.index[i]);
     const std::string is = fmt::format("the index behind it is {:.6g}", index);
+    // What a catalogue has of a name is a material's, however high: germanium's 4 in the infrared.
+    const bool is_catalogued =
+        !checked.row(i).medium.glass.empty() && resolve(checked, checked.row(i).medium.glass).glass;
     if (index < 1.0) {
         findings.push_back({"index-range", error, i + 1, is + ": below that of air", index, 1.0});
-    } else if (index < kLowestIndex || index > kHighestIndex) {
+    } else if (!is_catalogued && (index < kLowestIndex || index > kHighestIndex)) {
         findings.push_back({"index-range", warning, i + 1, is + ": no glass has it", index,
                             index < kLowestIndex ? kLowestIndex : kHighestIndex});
     }
@@ -51,6 +54,9 @@ void check_index_range(const CheckedLens& checked, int i, Findings& findings) {
         findings.push_back({"abbe-range", V_d <= 0.0 ? error : warning, i + 1,
                             fmt::format("an Abbe number of {} behind it: no glass has it", V_d), V_d,
                             V_d < kLowestAbbe ? kLowestAbbe : kHighestAbbe});
+    }
+    if (!optics::covers(*checked.media[i], spectral::kLineF) || !optics::covers(*checked.media[i], spectral::kLineC)) {
+        return;
     }
     const optics::DispersionFormula& formula = checked.media[i]->formula;
     const double n_F = optics::refractive_index(formula, spectral::kLineF);
@@ -214,8 +220,13 @@ void check_wavelengths(const CheckedLens& checked, int i, Findings& findings) {
         return;
     }
     const bool nothing_computed = *outside == asked;
-    const bool is_usual = outside >= wavelengths.end() - 2 &&  // of what renders take
-                          std::ranges::all_of(kListedLines, [&](double line) { return optics::covers(glass, line); });
+    // Of what renders take; a lens for the infrared or the ultraviolet makes no claim there.
+    const bool is_visible = std::ranges::any_of(wavelengths.begin(), wavelengths.end() - 2, [](double wavelength) {
+        return wavelength >= kRenderFrom && wavelength <= kRenderTo;
+    });
+    const bool is_usual =
+        outside >= wavelengths.end() - 2 &&
+        (!is_visible || std::ranges::all_of(kListedLines, [&](double line) { return optics::covers(glass, line); }));
     findings.push_back(
         {"wavelength-range",
          nothing_computed ? error

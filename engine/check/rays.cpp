@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/angle.h"
 #include "engine/base/bisect.h"
 #include "engine/base/infinity.h"
 
@@ -16,18 +17,33 @@ constexpr int kSteps = 200;           // across the beam, in search of its edge
 constexpr int kEdgeHalvings = 50;     // of a step
 constexpr double kBackwards = -1e-9;  // mm: further back than rounding goes
 
-/// From the axial object point, through height `h` in the plane of the first vertex.
-Ray<double> axial_ray(const CheckedLens& checked, double h) {
-    const double distance = checked.prescription.object_distance_mm;
-    if (std::isinf(distance)) {
-        return {{0.0, h, 0.0}, {0.0, 0.0, 1.0}};
+/// From the object to the first vertex of a surface that changes light: files put planes of air before it.
+double distance_to_lens(const CheckedLens& checked) {
+    double distance = checked.prescription.object_distance_mm;
+    for (int i = 0; i < checked.leading_dummies(); ++i) {
+        distance += checked.row(i).thickness_mm;
     }
-    return {{0.0, 0.0, -distance}, normalized(Vec3d{0.0, h, distance})};
+    return distance;
+}
+
+/// From the axial object point, through `at` in the plane of the first vertex.
+Ray<double> axial_ray(const CheckedLens& checked, const Vec2d& at) {
+    if (std::isinf(checked.prescription.object_distance_mm)) {
+        return {{at.x, at.y, 0.0}, {0.0, 0.0, 1.0}};
+    }
+    return {{0.0, 0.0, -checked.prescription.object_distance_mm},
+            normalized(Vec3d{at.x, at.y, distance_to_lens(checked)})};
+}
+
+/// The same, in the plane that a cut shows.
+Ray<double> axial_ray(const CheckedLens& checked, double h) {
+    return axial_ray(checked, {0.0, h});
 }
 
 AxialBeam beam_through(const CheckedLens& checked, const optics::TraceLens<double>& lens) {
     AxialBeam beam;
-    const double widest = 1.5 * std::max(checked.semi_diameters.front(), paraxial_beam(checked).height);
+    const double front = checked.semi_diameters[static_cast<std::size_t>(checked.leading_dummies())];
+    const double widest = 1.5 * std::max(front, paraxial_beam(checked).height);
     if (!std::isfinite(widest)) {
         return beam;
     }
@@ -136,8 +152,10 @@ optics::TraceLens<double> without_rims(const CheckedLens& checked, bool keep_sto
 ParaxialBeam paraxial_beam(const CheckedLens& checked) {
     const optics::TraceLens<double>& lens = *checked.traced;
     const int stop = checked.lens->stop_index();
-    const double distance = checked.prescription.object_distance_mm;
-    const optics::ParaxialRay any{1.0, std::isinf(distance) ? 0.0 : 1.0 / distance};
+    const double object = checked.prescription.object_distance_mm;
+    const double distance = distance_to_lens(checked);
+    const optics::ParaxialRay any =
+        std::isinf(object) ? optics::ParaxialRay{1.0, 0.0} : optics::ParaxialRay{object / distance, 1.0 / distance};
     const double at_stop = optics::trace_paraxial(lens, any, 0, stop).height;
     const double behind = optics::trace_paraxial(lens, any, 0, checked.size() - 1).slope;
     const double height = std::abs(std::sqrt(lens.surfaces[stop].semi_diameter_squared) / at_stop);
@@ -156,25 +174,94 @@ double AxialSpread::at(double z) const {
     return std::sqrt(std::max(0.0, yy + z * (2.0 * yt + z * tt)));
 }
 
-AxialSpread axial_spread(const CheckedLens& checked, double beam_height) {
+namespace {
+
+/// No surface is shifted or tilted; toroids may be among them.
+bool is_centred(const optics::Prescription& prescription) {
+    const auto is_aligned = [](const auto& part) { return part.misalignment == optics::Misalignment{}; };
+    return std::ranges::all_of(prescription.surfaces, is_aligned) &&
+           std::ranges::all_of(prescription.groups, is_aligned);
+}
+
+/// Of the lens at one of its wavelengths; one azimuth says all where the lens is symmetric about its axis.
+AxialSpread axial_spread(const CheckedLens& checked, const optics::TraceLens<double>& lens, double beam_height) {
     constexpr int kRays = 32;
+    const int azimuths = checked.prescription.is_rotationally_symmetric() ? 1 : 12;
     AxialSpread sums;
     double weights = 0.0;
     for (int k = 0; k < kRays; ++k) {
         const double h = beam_height * (k + 0.5) / kRays;
-        const RayFate fate = follow(*checked.traced, axial_ray(checked, h));
-        if (!fate.passes()) {
-            continue;
+        for (int j = 0; j < azimuths; ++j) {
+            const double azimuth = azimuths == 1 ? 0.5 * kPi : 0.5 * kPi * (j + 0.5) / azimuths;
+            const RayFate fate = follow(lens, axial_ray(checked, {h * std::cos(azimuth), h * std::sin(azimuth)}));
+            if (!fate.passes()) {
+                continue;
+            }
+            const Vec3d& d = fate.ray.direction;
+            const Vec2d t{d.x / d.z, d.y / d.z};
+            const double back = fate.ray.origin.z - checked.lens->last_vertex_z();
+            const Vec2d at{fate.ray.origin.x - t.x * back, fate.ray.origin.y - t.y * back};
+            sums.yy += h * (at.x * at.x + at.y * at.y);
+            sums.yt += h * (at.x * t.x + at.y * t.y);
+            sums.tt += h * (t.x * t.x + t.y * t.y);
+            weights += h;
         }
-        const double t = fate.ray.direction.y / fate.ray.direction.z;
-        const double y = fate.ray.origin.y - t * (fate.ray.origin.z - checked.lens->last_vertex_z());
-        sums.yy += h * y * y;
-        sums.yt += h * y * t;
-        sums.tt += h * t * t;
-        weights += h;
     }
     const double mean = weights > 0.0 ? 1.0 / weights : 0.0;
     return {mean * sums.yy, mean * sums.yt, mean * sums.tt};
+}
+
+/// Where the ray of that height crosses the axis, mm behind the last vertex.
+std::optional<double> axis_crossing(const CheckedLens& checked, double height) {
+    const RayFate fate = follow(*checked.traced, axial_ray(checked, height));
+    const double slope = fate.ray.direction.y / fate.ray.direction.z;
+    return fate.passes() && slope != 0.0
+               ? std::optional(fate.ray.origin.z - fate.ray.origin.y / slope - checked.lens->last_vertex_z())
+               : std::nullopt;
+}
+
+}  // namespace
+
+AxialSpread axial_spread(const CheckedLens& checked, double beam_height) {
+    return axial_spread(checked, *checked.traced, beam_height);
+}
+
+bool stands_at_best_focus(const CheckedLens& checked) {
+    if (!checked.traced || !checked.focus || !is_centred(checked.prescription) || checked.collimates()) {
+        return false;
+    }
+    const double last = checked.row(checked.size() - 1).thickness_mm;
+    const double image = checked.focus->image_distance;
+    constexpr double kSamePlace = 1e-3;  // of the focal length
+    if (!(last * image > 0.0) || std::abs(last - image) < kSamePlace * std::abs(checked.focus->efl)) {
+        return false;
+    }
+    const AxialBeam beam = axial_beam(checked);
+    if (beam.height <= 0.0) {
+        return false;
+    }
+    const auto is_there = [&](const AxialSpread& spread) {
+        constexpr double kNear = 0.1;
+        const double best = spread.best_z();
+        return spread.tt > 0.0 && std::abs(last - best) <= kNear * std::abs(image - best);
+    };
+    constexpr double kAtEdge = 0.02;
+    const std::optional<double> edge = axis_crossing(checked, beam.height);
+    if (is_there(axial_spread(checked, beam.height)) ||
+        (edge && std::abs(last - *edge) <= kAtEdge * std::abs(image - *edge))) {
+        return true;
+    }
+    AxialSpread all;
+    for (const double wavelength : checked.prescription.wavelengths_nm) {
+        const bool is_known = std::ranges::all_of(
+            checked.lens->surfaces, [&](const auto& surface) { return optics::covers(surface.medium, wavelength); });
+        if (is_known) {
+            const AxialSpread own =
+                axial_spread(checked, optics::at_wavelength<double>(*checked.lens, wavelength), beam.height);
+            all = {all.yy + own.yy, all.yt + own.yt, all.tt + own.tt};
+        }
+    }
+    return is_there(all);
 }
 
 }  // namespace lensproof::check

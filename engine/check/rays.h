@@ -27,8 +27,9 @@ std::string words(const RayFate& fate);
 /// The lens with rims so wide that none cuts; with `keep_stop`, the stop still does.
 optics::TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop);
 
-/// The real rays from the axial object point. They are told apart by their height in the plane of the first vertex,
-/// which is the beam's semi-diameter in front of the lens where the object is far, and less where it is near.
+/// The real rays from the axial object point. They are told apart by their height in the plane of the first vertex
+/// (of a surface that changes light), which is the beam's semi-diameter in front of the lens where the object is far,
+/// and less where it is near.
 struct AxialBeam {
     double height = 0.0;     // mm, in the first vertex's plane: the largest up to which every ray passes
     RayFate limit;           // of the ray just above
@@ -63,5 +64,11 @@ struct AxialSpread {
 
 /// Of the rays up to `beam_height` in the first vertex's plane.
 AxialSpread axial_spread(const CheckedLens& checked, double beam_height);
+
+/// Whether the last thickness ends off the paraxial image and where real rays of the axial beam are sharpest, at the
+/// reference wavelength or at all of the file's together, to a tenth of the way there from the paraxial image, or where
+/// the beam's edge crosses the axis, to a fiftieth: then it is where a designer puts the sensor. A digit's slip seldom
+/// meets it. Of centred lenses; those of cylinders, too.
+bool stands_at_best_focus(const CheckedLens& checked);
 
 }  // namespace lensproof::check

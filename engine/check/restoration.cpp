@@ -13,7 +13,9 @@ Restoration::Restoration(const CheckedLens& checked)
       object_distance_(checked.prescription.object_distance_mm),
       image_distance_is_bfl_(checked.claims.bfl_mm.has_value()) {
     const double last = checked.size() > 0 ? checked.row(checked.size() - 1).thickness_mm : 0.0;
-    if (!image_distance_ && last > 0.0 && std::isfinite(last)) {
+    // A plane of best focus, or behind a beam that leaves parallel, says nothing of the paraxial image.
+    const bool is_image = !checked.is_at_best_focus && !checked.collimates();
+    if (!image_distance_ && is_image && last > 0.0 && std::isfinite(last)) {
         image_distance_ = last;
     }
     as_given_ = checked.focus ? residual(checked.table) : kInfinity;

