@@ -19,6 +19,7 @@ constexpr double kFewMarkers = 0.9;     // of the board's; with fewer a sharpene
 constexpr double kFine_px = 0.8;        // what sharpening takes for noise,
 constexpr double kCoarse_px = 2.0;      // and for blur
 constexpr double kSharpening = 4.0;
+constexpr double kMostAgree = 0.8;            // of the markers seen; where fewer do, the board may have another count
 constexpr double kDisagreement_sides = 0.35;  // a marker farther from where its neighbours put it is a false one
 
 struct Marker {
@@ -180,9 +181,15 @@ std::vector<Marker> agreeing(const std::vector<SeenMarker>& seen, const std::vec
     return markers;
 }
 
-std::vector<Marker> agreeing_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary,
-                                     const std::vector<cv::Point2d>& centres, double side_squares) {
-    return agreeing(seen_markers(picture, dictionary), centres, side_squares);
+struct Reading {
+    std::vector<Marker> markers;  // that agree
+    std::size_t seen = 0;         // with them those that do not
+};
+
+Reading agreeing_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary,
+                         const std::vector<cv::Point2d>& centres, double side_squares) {
+    const std::vector<SeenMarker> seen = seen_markers(picture, dictionary);
+    return {agreeing(seen, centres, side_squares), seen.size()};
 }
 
 /// The blur of a lens out of focus, partly undone: markers are read from cells a few pixels wide.
@@ -199,21 +206,22 @@ cv::Mat sharpened(const cv::Mat& picture) {
 }
 
 /// The markers of the picture, or of a sharpened copy where it shows fewer than it might and the copy more.
-std::vector<Marker> best_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary,
-                                 const std::vector<cv::Point2d>& centres, double side_squares) {
-    std::vector<Marker> markers = agreeing_markers(picture, dictionary, centres, side_squares);
-    if (static_cast<double>(markers.size()) < kFewMarkers * static_cast<double>(centres.size())) {
-        std::vector<Marker> more = agreeing_markers(sharpened(picture), dictionary, centres, side_squares);
-        if (more.size() > markers.size()) {
+Reading best_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco::Dictionary>& dictionary,
+                     const std::vector<cv::Point2d>& centres, double side_squares) {
+    Reading reading = agreeing_markers(picture, dictionary, centres, side_squares);
+    if (static_cast<double>(reading.markers.size()) < kFewMarkers * static_cast<double>(centres.size())) {
+        Reading more = agreeing_markers(sharpened(picture), dictionary, centres, side_squares);
+        if (more.markers.size() > reading.markers.size()) {
             return more;
         }
     }
-    return markers;
+    return reading;
 }
 
-/// "none of the board's markers found", or that the markers lie as on a board of another count: numbers run row by row,
-/// so where they lie tells the columns, and the last one how many rows there are at least.
-std::string why_none(const cv::Mat& picture, const scene::CharucoBoard& board, double side_squares) {
+/// That more markers than `agreeing_as_stated` lie as on a board of another count, where they do: numbers run row by
+/// row, so where they lie tells the columns, and the last one how many rows there are at least.
+std::optional<std::string> other_count(const cv::Mat& picture, const scene::CharucoBoard& board, double side_squares,
+                                       std::size_t agreeing_as_stated) {
     constexpr std::size_t kFewest = 4;
     constexpr int kMostColumns = 40;
     const std::vector<SeenMarker> seen = seen_markers(picture, dictionary_of(board, board.markers.size()));
@@ -235,8 +243,8 @@ std::string why_none(const cv::Mat& picture, const scene::CharucoBoard& board, d
             best = other;
         }
     }
-    if (most < kFewest || 2 * most < seen.size()) {
-        return "none of the board's markers found";
+    if (most < kFewest || 2 * most < seen.size() || most <= agreeing_as_stated || best.columns == board.columns) {
+        return std::nullopt;
     }
     return std::to_string(most) + " markers found that lie as on a board of " + std::to_string(best.columns) +
            " columns and " + std::to_string(best.rows) + " rows or more (squares = [" + std::to_string(best.columns) +
@@ -250,12 +258,21 @@ ChartSearch find_charuco(const cv::Mat& picture, const scene::CharucoBoard& boar
     const std::vector<cv::Point2d> centres = marker_centres(board);
     const double side_squares = board.marker_mm / board.square_mm;
     const auto dictionary = dictionary_of(board, centres.size());
-    const std::vector<Marker> markers = best_markers(picture, dictionary, centres, side_squares);
+    const auto [markers, seen] = best_markers(picture, dictionary, centres, side_squares);
     if (markers.empty()) {
         cv::Mat mirrored;
         cv::flip(picture, mirrored, 1);
-        const bool is_mirrored = !agreeing_markers(mirrored, dictionary, centres, side_squares).empty();
-        return {.reason = is_mirrored ? "the board is seen mirrored" : why_none(picture, board, side_squares)};
+        const bool is_mirrored = !agreeing_markers(mirrored, dictionary, centres, side_squares).markers.empty();
+        return {.reason =
+                    is_mirrored
+                        ? "the board is seen mirrored"
+                        : other_count(picture, board, side_squares, 0).value_or("none of the board's markers found")};
+    }
+    // On a board with other columns markers of one row agree with each other, and with no other row.
+    if (static_cast<double>(markers.size()) < kMostAgree * static_cast<double>(seen)) {
+        if (std::optional<std::string> reason = other_count(picture, board, side_squares, markers.size())) {
+            return {.reason = std::move(*reason)};
+        }
     }
     ChartSearch result;
     for (int row = 1; row < board.rows; ++row) {

@@ -1,5 +1,7 @@
 #include "calibration/geometry/fit_geometry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -284,12 +286,11 @@ class Fit {
         };
         const double focal = focal_length_px(state.model);
         if (!(error(0) < kUndetermined * std::abs(focal))) {
-            throw undetermined("the focal length (" + std::to_string(focal) + " ± " + std::to_string(error(0)) +
-                               " px)");
+            throw undetermined(fmt::format("the focal length ({:.3g} ± {:.2g} px)", focal, error(0)));
         }
         const double centre_error = std::max(error(1), error(2));
         if (!(centre_error < kUndetermined * 0.5 * std::hypot(width_, height_))) {
-            throw undetermined("the principal point (± " + std::to_string(centre_error) + " px)");
+            throw undetermined(fmt::format("the principal point (± {:.2g} px)", centre_error));
         }
         if (!(focal > 0.0)) {
             throw undetermined("the focal length");

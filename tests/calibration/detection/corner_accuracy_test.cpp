@@ -119,6 +119,20 @@ TEST(CalibrationCornerAccuracy, ACharucoBoardOfAnotherCountIsOffered) {
     EXPECT_NE(reason.find(seen + "), not of"), std::string::npos) << reason;
 }
 
+// With one column too many, markers of one row still agree with each other: corners would be found, in wrong places.
+TEST(CalibrationCornerAccuracy, ACharucoBoardWithAColumnTooManyIsNotTaken) {
+    scene::Chart board = charuco_board();
+    const Taken taken = take(board, perspective_camera(), {.tilt_deg = 10.0});
+    auto& stated = std::get<scene::CharucoBoard>(board.pattern);
+    const std::string seen = "squares = [" + std::to_string(stated.columns) + ", ";
+    ++stated.columns;
+    ++stated.rows;
+    const Detection detection = detect(taken.image, board);
+    EXPECT_FALSE(detection.found());
+    EXPECT_NE(detection.reason.find("columns"), std::string::npos) << detection.reason;
+    EXPECT_NE(detection.reason.find(seen), std::string::npos) << detection.reason;
+}
+
 // White that is clipped grows at black's cost, but evenly on both sides of a corner.
 TEST(CalibrationCornerAccuracy, ClippedWhiteMovesNoCorner) {
     Taken taken = take(kBoard, perspective_camera(), {.tilt_deg = 30.0, .blur_px = 1.0});
