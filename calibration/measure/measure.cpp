@@ -215,14 +215,21 @@ void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2
         }
     }
     if (pairs_in.empty()) {
-        profile.not_measured[part::kChromaticShift] = "no chart and no edges were found in a picture in colour";
+        profile.not_measured[part::kChromaticShift] =
+            seen.sharpness.coloured_edges > 0
+                ? "all edges that were found are between two colours, whose shift need not be the lens's"
+                : "no chart and no edges were found in a picture in colour";
         return;
     }
     for (const auto& [channel, pairs] : pairs_in) {
         try {
             add_chromatic_shift(profile, channel_label(channel), pairs, centre);
         } catch (const InputError& e) {
-            profile.not_measured[part::kChromaticShift] = e.what();
+            profile.not_measured[part::kChromaticShift] =
+                e.what() +
+                (seen.sharpness.coloured_edges > 0
+                     ? fmt::format(" ({} edges between two colours are left out)", seen.sharpness.coloured_edges)
+                     : "");
         }
     }
 }

@@ -119,6 +119,16 @@ std::optional<EdgeMtf> measured_edge(SharpnessObservations& seen, const formats:
     return std::get<EdgeMtf>(std::move(result));
 }
 
+// Whether both sides of an edge have one colour, as those of a black and a white square: the same contrast in all
+// channels.
+bool is_of_one_colour(const formats::Image& image, const std::vector<int>& channels, int reference,
+                      const EdgeRegion& region) {
+    constexpr double kSame = 0.05;
+    const double expected = tone_contrast(image, reference, region);
+    return std::ranges::all_of(
+        channels, [&](int channel) { return std::abs(tone_contrast(image, channel, region) - expected) < kSame; });
+}
+
 InputError refused(const std::string& name, const std::string& channel, const PixelRectangle& r,
                    const std::string& reason) {
     return InputError(name + ": the rectangle " + std::to_string(r.x) + "," + std::to_string(r.y) + "," +
@@ -153,13 +163,15 @@ std::map<std::string, std::vector<ChromaticPair>> observe_any_edges(SharpnessObs
         }
         any = true;
         const double angle = radians(expected->normal_deg);
+        const bool is_neutral = is_of_one_colour(image, channels, reference, region);
+        own.coloured_edges += is_neutral ? 0 : 1;
         for (const int channel : channels) {
             const std::string& label = image.channels[static_cast<std::size_t>(channel)];
             const auto edge = channel == reference ? expected : measured_edge(own, image, channel, region);
             if (edge) {
                 seen.edges[label].push_back({name, *edge});
             }
-            if (edge && channel != reference) {
+            if (edge && is_neutral && channel != reference) {
                 pairs[label].push_back({expected->centre_px, edge->centre_px, Vec2d{std::cos(angle), std::sin(angle)}});
             }
         }
@@ -167,6 +179,7 @@ std::map<std::string, std::vector<ChromaticPair>> observe_any_edges(SharpnessObs
     for (const auto& [reason, count] : own.refusals) {
         seen.refusals[reason] += count;
     }
+    seen.coloured_edges += own.coloured_edges;
     if (!any) {
         throw InputError(name + ": none of " + std::to_string(regions.size()) + " edges can be measured" +
                          (own.refusals.empty() ? ": expected straight edges between even tones"

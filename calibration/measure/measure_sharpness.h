@@ -19,6 +19,7 @@ struct SharpnessObservations {
     std::map<std::string, std::vector<ProfileEdge>> edges;  // by channel
     std::map<std::string, std::vector<ProfileStar>> stars;  // by channel
     std::map<std::string, int> refusals;                    // how many edges were refused for which reason
+    int coloured_edges = 0;                                 // found in pictures: between two colours
     /// Where the focus stood, mm, by picture; empty when that is not known.
     std::map<std::string, double> focus_position_mm;
 };
@@ -28,7 +29,8 @@ void observe_chart_edges(SharpnessObservations& seen, const formats::Image& imag
                          const ChartPoints& points, const scene::Chart& chart);
 
 /// Measures what edges there are, in all `channels`, and lists those that can be measured. Returns by channel the pairs
-/// with `reference`, each known along its edge's normal. Throws InputError saying why there is none.
+/// with `reference`, each known along its edge's normal: of edges between tones of one colour, since a coloured thing's
+/// edge may lie elsewhere in each channel by itself. Throws InputError saying why there is none.
 std::map<std::string, std::vector<ChromaticPair>> observe_any_edges(SharpnessObservations& seen,
                                                                     const formats::Image& image,
                                                                     const std::vector<int>& channels, int reference,

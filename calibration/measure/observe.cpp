@@ -268,6 +268,7 @@ void add(SharpnessObservations& all, SharpnessObservations& own) {
     for (const auto& [reason, count] : own.refusals) {
         all.refusals[reason] += count;
     }
+    all.coloured_edges += own.coloured_edges;
 }
 
 void take(Observations& seen, Look look, const Picture& picture, const MeasureInput& input) {

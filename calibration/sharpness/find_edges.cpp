@@ -158,6 +158,13 @@ bool overlap(const EdgeRegion& a, const EdgeRegion& b) {
 
 }  // namespace
 
+double tone_contrast(const formats::Image& image, int channel, const EdgeRegion& region) {
+    const int width = std::clamp(static_cast<int>(region.half_width_px), kNarrowest_px, kWidest_px);
+    const Tones found = tones(profile_across(channel_plane(image, channel), region), width);
+    const double sum = found.low_side + found.high_side;
+    return sum > 0.0 ? (found.high_side - found.low_side) / sum : 0.0;
+}
+
 std::vector<EdgeRegion> find_edges(const formats::Image& image, int channel) {
     const cv::Mat plane = channel_plane(image, channel);
     std::vector<Stretch> stretches;

@@ -15,4 +15,8 @@ namespace lensproof::calibration {
 /// lowers what is measured.
 std::vector<EdgeRegion> find_edges(const formats::Image& image, int channel);
 
+/// (bright − dark) / (bright + dark) of the region's two tones in a channel, signed by the side that is brighter; alike
+/// in all channels where both sides have one colour.
+double tone_contrast(const formats::Image& image, int channel, const EdgeRegion& region);
+
 }  // namespace lensproof::calibration

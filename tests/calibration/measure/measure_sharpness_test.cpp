@@ -85,6 +85,34 @@ TEST(CalibrationMeasureSharpness, EdgesThatAreFoundTellSharpnessAndShift) {
     }
 }
 
+// The same chart printed in red on white: its edges are as sharp, but an edge between two colours may lie elsewhere in
+// each channel by itself, so no chromatic shift is said.
+TEST(CalibrationMeasureSharpness, ColouredEdgesTellNoChromaticShift) {
+    SimulatedCamera camera{.model = perspective_camera(),
+                           .width_px = 640,
+                           .height_px = 480,
+                           .channels = {{.name = "R"}, {.name = "G"}, {.name = "B"}}};
+    camera.blur_px = 0.8;
+    camera.read_noise = 0.004;
+    const scene::Chart chart{.pattern = scene::SlantedEdges{7, 5, 60.0, 34.0, 6.0}};
+    const Pose pose{{0.02, -0.03, 0.0}, {0.0, 0.0, 600.0}};
+    const auto printed_in_red = [=] {
+        formats::Image image = simulate_chart(camera, pose, chart, 11);
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                image.at(x, y, 0) = 0.4F + 0.5F * image.at(x, y, 0);
+            }
+        }
+        return image;
+    };
+    const Profile profile = measure(only_edges({{"scene", PictureRole::edges, printed_in_red}}, {}));
+    EXPECT_GT(profile.sharpness.at("G").size(), 50u);
+    EXPECT_GT(profile.sharpness.at("R").size(), 50u);
+    EXPECT_FALSE(profile.curves.contains("chromatic_shift_R_px"));
+    EXPECT_EQ(profile.not_measured.at("chromatic_shift"),
+              "all edges that were found are between two colours, whose shift need not be the lens's");
+}
+
 TEST(CalibrationMeasureSharpness, NoEdgeInAnyPictureIsRefusedWithWhatWasSeen) {
     const auto blank = [] { return formats::make_image(64, 48, {"Y"}); };
     try {
