@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -88,6 +89,33 @@ Outcome run_program(const std::vector<std::string>& arguments, const fs::path& w
                     .err = bytes_of(err_file),
                     .peak_kib = used.ru_maxrss};
     return outcome;
+}
+
+std::string said_to_a_terminal(const std::vector<std::string>& arguments, const fs::path& where) {
+    int ours = -1;
+    int its = -1;
+    if (::openpty(&ours, &its, nullptr, nullptr, nullptr) != 0) {
+        throw std::runtime_error("no terminal can be opened");
+    }
+    const pid_t child = ::fork();
+    if (child == 0) {
+        redirect(STDOUT_FILENO, Stream::captured, "/dev/null");
+        ::dup2(its, STDERR_FILENO);
+        ::close(ours);
+        ::close(its);
+        become_program(arguments, where);
+    }
+    ::close(its);
+    std::string said;
+    std::array<char, 4096> some{};
+    for (ssize_t count = 0; (count = ::read(ours, some.data(), some.size())) > 0;) {  // fails once the program is gone
+        said.append(some.data(), static_cast<std::size_t>(count));
+    }
+    ::close(ours);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(exit_status(status), 0) << said;
+    return said;
 }
 
 RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const fs::path& where) : child_(::fork()) {
