@@ -9,7 +9,8 @@ namespace lensproof::findings {
 
 inline constexpr int kShownWidth = 480;  // px: a report holds many pictures
 
-/// A copy as PNG, or as JPEG where its name ends so, smaller where it is wider than that by a factor or more: by a whole number.
+/// A copy as PNG, or as JPEG where its name ends so, smaller where it is wider than that by a factor or more: by a
+/// whole number.
 Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image,
                       int widest = kShownWidth);
 

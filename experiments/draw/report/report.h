@@ -46,8 +46,8 @@ namespace lensproof::draw {
 ///                                   "points"?: [[x, y, dx, dy], …]}],       detected point and measured − model, px
 ///                    "points"?: {"centre_px": [x, y], "half_diagonal_px", "rms_px"},   what the points lie about
 ///                    "worst"?: [{"name", "caption"}]}],              drawings of the points that are furthest off
-///      "chapters"?: [{"title", "text"?, "subjects": [id, …]}],   subjects that stand together, with their checks; those
-///                                                                that are in none follow
+///      "chapters"?: [{"title", "text"?, "subjects": [id, …]}],   subjects that stand together, with their checks;
+///                                                                those in none follow
 ///      "plots"?: [{"id", "title", "subtitle"?, "x_label", "y_label", "x_unit"?, "y_unit"?,
 ///                 "over"?: "image_height" | "azimuth" | "residual": the subjects' points behind a place can be shown,
 ///                 "limit"?: draws the band ± limit,
