@@ -155,27 +155,26 @@ struct FeaturePlane {
 };
 
 FeaturePlane chart_plane(const render::SceneSetup& setup, const render::Camera& camera, const std::string& name) {
-    const auto plane = [](const scene::Chart& chart, const AffineMap& to_camera) {
-        return FeaturePlane{.pattern = chart.pattern,
-                            .pitch_mm = scene::traits(chart).pitch_mm,
-                            .middles = scene::feature_points(chart),
-                            .to_camera = to_camera};
-    };
-    std::optional<FeaturePlane> found;
+    const scene::Chart* chart = nullptr;
+    AffineMap to_camera;
     if (setup.chart && name.empty()) {
-        found = plane(setup.chart->chart, scene::place(setup.chart->placement));
+        chart = &setup.chart->chart;
+        to_camera = scene::place(setup.chart->placement);
     } else {
         const auto object = std::ranges::find(setup.scene.objects, name, &scene::ObjectDescription::name);
         if (object != setup.scene.objects.end() && std::holds_alternative<scene::ChartOnQuad>(object->shape)) {
             const AffineMap upright{.linear = {Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, 1}}};  // a quad's y is up
-            found = plane(std::get<scene::ChartOnQuad>(object->shape).chart,
-                          composed(inverse(camera.pose()).value(), composed(object->to_world, upright)));
+            chart = &std::get<scene::ChartOnQuad>(object->shape).chart;
+            to_camera = composed(inverse(camera.pose()).value(), composed(object->to_world, upright));
         }
     }
-    if (!found || parts_of(found->pattern, {}).empty()) {
+    if (chart == nullptr || parts_of(chart->pattern, {}).empty()) {
         throw InputError(fmt::format("the scene has no chart \"{}\" of discs, dots or crosses", name));
     }
-    return *std::move(found);
+    return {.pattern = chart->pattern,
+            .pitch_mm = scene::traits(*chart).pitch_mm,
+            .middles = scene::feature_points(*chart),
+            .to_camera = to_camera};
 }
 
 /// Each spherical light by itself, a disc in a plane parallel to the film.
