@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 
 #include "tests/complaint.h"
 #include "tests/places.h"
@@ -91,11 +90,11 @@ Outcome run_program(const std::vector<std::string>& arguments, const fs::path& w
     return outcome;
 }
 
-std::string said_to_a_terminal(const std::vector<std::string>& arguments, const fs::path& where) {
+std::optional<std::string> said_to_a_terminal(const std::vector<std::string>& arguments, const fs::path& where) {
     int ours = -1;
     int its = -1;
     if (::openpty(&ours, &its, nullptr, nullptr, nullptr) != 0) {
-        throw std::runtime_error("no terminal can be opened");
+        return std::nullopt;
     }
     const pid_t child = ::fork();
     if (child == 0) {

@@ -26,8 +26,10 @@ struct Outcome {
 Outcome run_program(const std::vector<std::string>& arguments, const std::filesystem::path& where,
                     Stream out = Stream::captured, Stream err = Stream::captured);
 
-/// What the program writes where its standard error is a terminal; its standard output is thrown away.
-std::string said_to_a_terminal(const std::vector<std::string>& arguments, const std::filesystem::path& where);
+/// What the program writes where its standard error is a terminal; its standard output is thrown away. Nothing where no
+/// terminal can be opened (/dev/pts is not mounted).
+std::optional<std::string> said_to_a_terminal(const std::vector<std::string>& arguments,
+                                              const std::filesystem::path& where);
 
 /// The program while it runs, its standard streams thrown away.
 class RunningProgram {
