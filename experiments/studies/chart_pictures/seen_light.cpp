@@ -1,6 +1,7 @@
 #include "experiments/studies/chart_pictures/seen_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 

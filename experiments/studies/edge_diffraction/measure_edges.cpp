@@ -8,6 +8,7 @@
 #include "engine/analysis/edge_wave.h"
 #include "engine/base/angle.h"
 #include "engine/base/infinity.h"
+#include "engine/base/power_law.h"
 #include "engine/render/integrators/passes.h"
 #include "engine/scene/scene.h"
 
@@ -314,19 +315,11 @@ double airy_mm(const EdgeSetting& setting) {
 }
 
 double EdgeProfile::slope() const {
-    const auto n = static_cast<double>(octaves.size());
-    double x = 0.0;
-    double y = 0.0;
-    double xx = 0.0;
-    double xy = 0.0;
+    std::vector<Vec2d> points;
     for (std::size_t i = 0; i < octaves.size(); ++i) {
-        const double log_r = std::log(kOctaves.at(i));
-        x += log_r / n;
-        y += std::log(octaves[i]) / n;
-        xx += log_r * log_r / n;
-        xy += log_r * std::log(octaves[i]) / n;
+        points.push_back({kOctaves.at(i), octaves[i]});
     }
-    return (xy - x * y) / (xx - x * x);
+    return power_law(points).exponent;
 }
 
 EdgeDiffraction measure_edges(const EdgeSetting& setting, std::uint64_t seed) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 #include "experiments/draw/chart.h"
 #include "experiments/draw/palette.h"
@@ -36,13 +37,13 @@ LookCheck read_check(TomlTable& table, const std::vector<std::string>& variants)
 }
 
 struct Mean {
-    double value = std::numeric_limits<double>::quiet_NaN();
-    double standard_error = 0.0;
+    double value = 0.0;
+    double standard_error = 0.0;  // by the values' scatter: nobody knows that of one
     std::size_t count = 0;
 };
 
 Mean mean_of(const std::vector<double>& values) {
-    Mean mean{.value = 0.0, .count = values.size()};
+    Mean mean{.count = values.size()};
     const auto n = static_cast<double>(values.size());
     for (const double value : values) {
         mean.value += value / n;
@@ -51,33 +52,37 @@ Mean mean_of(const std::vector<double>& values) {
     for (const double value : values) {
         square += (value - mean.value) * (value - mean.value);
     }
-    mean.standard_error = values.size() > 1 ? std::sqrt(square / (n * (n - 1.0))) : 0.0;
-    return values.empty() ? Mean{} : mean;
+    mean.standard_error =
+        values.size() > 1 ? std::sqrt(square / (n * (n - 1.0))) : std::numeric_limits<double>::quiet_NaN();
+    return mean;
 }
 
 /// Picture less rays, the mean in each of three zones of the field, where noise is less than a feature's: of them the
-/// farthest from 0.
+/// farthest from 0, or one that is not known.
 findings::Check agreement(const LookQuantity& quantity, double limit, const VariantFeatures& variant) {
     constexpr std::size_t kZones = 3;
     const std::vector<ChartFeature>& features = variant.features;
-    Mean worst{.value = 0.0};
+    std::optional<Mean> worst;
     for (std::size_t zone = 0; zone < kZones; ++zone) {
         std::vector<double> off;
         for (std::size_t i = zone * features.size() / kZones; i < (zone + 1) * features.size() / kZones; ++i) {
             off.push_back(features[i].picture.*quantity.value - features[i].rays.*quantity.value);
         }
         const Mean mean = mean_of(off);
-        worst = std::abs(mean.value) >= std::abs(worst.value) ? mean : worst;
+        const auto is_known = [](const Mean& one) { return std::isfinite(one.value + one.standard_error); };
+        if (!worst || !is_known(mean) || (is_known(*worst) && std::abs(mean.value) > std::abs(worst->value))) {
+            worst = mean;
+        }
     }
     findings::Check check{.group = {}, .label = {}, .explanation = {}};
     check.label = fmt::format("{}, picture against rays: {}", quantity.label, variant.label);
-    check.value = worst.value;
-    check.sigma = worst.standard_error;
+    check.value = worst->value;
+    check.sigma = worst->standard_error;
     check.unit = quantity.unit;
     check.limit = limit;
     check.expectation = findings::Expectation::within;
     check.explanation =
-        fmt::format("The mean over {} features, in that third of the field where it is farthest from 0.", worst.count);
+        fmt::format("The mean over {} features, in that third of the field where it is farthest from 0.", worst->count);
     return check;
 }
 

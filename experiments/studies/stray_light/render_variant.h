@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "engine/base/json_archive.h"
+#include "engine/base/power_law.h"
 #include "engine/formats/image/image.h"
 #include "experiments/findings/study.h"
 #include "experiments/studies/stray_light/growing_picture.h"
-#include "experiments/studies/stray_light/power_law.h"
 #include "experiments/studies/stray_light/stray_scene.h"
 #include "experiments/studies/stray_light/streak_look.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "experiments/studies/stray_light/power_law.h"
+#include "engine/base/power_law.h"
 #include "experiments/studies/stray_light/stray_study.h"
 
 namespace lensproof::studies {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/angle.h"
-#include "experiments/studies/stray_light/power_law.h"
+#include "engine/base/power_law.h"
 
 namespace lensproof::studies {
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/complaint.h"
 
 namespace lensproof::studies::measured_chart_test {
@@ -45,6 +47,22 @@ TEST(MeasuredChart, HoldsTheWorstThirdOfTheField) {
     EXPECT_EQ(checks(1.5, findings::Quality::full)[1].verdict(), findings::Verdict::pass);
     EXPECT_EQ(checks(1.5, findings::Quality::draft)[0].verdict(), findings::Verdict::pass);
     EXPECT_EQ(checks(9.0, findings::Quality::draft)[0].verdict(), findings::Verdict::fail);
+}
+
+// Nothing is held where a feature could not be measured, or where there are so few that nobody knows their scatter.
+TEST(MeasuredChart, HoldsNothingThatIsNotKnown) {
+    const MeasuredChart chart = read("agrees = { sagittal_um = 1.0 }\n");
+    const auto verdict = [&](const VariantFeatures& variant) {
+        return chart_checks(chart, "dots", "Dots", {variant}, findings::Quality::full).at(0).verdict();
+    };
+    for (const std::size_t where : {0U, 15U, 29U}) {
+        VariantFeatures unmeasured = features(0.0);
+        unmeasured.features[where].picture.sagittal_um = std::nan("");
+        EXPECT_EQ(verdict(unmeasured), findings::Verdict::inconclusive) << where;
+    }
+    VariantFeatures few = features(0.0);
+    few.features.resize(2);
+    EXPECT_EQ(verdict(few), findings::Verdict::inconclusive);
 }
 
 TEST(MeasuredChart, SaysWhatItDoesNotKnow) {

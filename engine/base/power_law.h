@@ -1,4 +1,4 @@
-// experiments/studies/stray_light/power_law.h — the exponent of a power law through points.
+// engine/base/power_law.h — the exponent of a power law through points.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof::studies {
+namespace lensproof {
 
 struct PowerLaw {
     double exponent = 0.0;
@@ -33,4 +33,4 @@ inline PowerLaw power_law(const std::vector<Vec2d>& points) {
     return {exponent, points.size() > 2 ? std::sqrt(std::max(0.0, yy - exponent * xy) / (xx * (n - 2.0))) : 0.0};
 }
 
-}  // namespace lensproof::studies
+}  // namespace lensproof
