@@ -163,17 +163,27 @@ bool TomlTable::is_text(const std::string& key) const {
     return node != nullptr && node->is_string();
 }
 
+bool TomlTable::is_text_list(const std::string& key) const {
+    const toml::node* node = get(key);
+    const toml::array* array = node == nullptr ? nullptr : node->as_array();
+    return array != nullptr && array->is_homogeneous<std::string>();
+}
+
 bool TomlTable::is_table(const std::string& key) const {
     const toml::node* node = get(key);
     return node != nullptr && node->is_table();
 }
 
-std::string TomlTable::where(const std::string& key) const {
+int TomlTable::line(const std::string& key) const {
     const Layer& layer = layer_of(key);
     const toml::node* node = layer.table->get(key);
-    const auto line = (node != nullptr ? node->source() : layer.table->source()).begin.line;
+    return std::max(1, static_cast<int>((node != nullptr ? node->source() : layer.table->source()).begin.line));
+}
+
+std::string TomlTable::where(const std::string& key) const {
+    const Layer& layer = layer_of(key);
     const std::string name = layer.qualified(key);
-    return fmt::format("{}:{}:{}{}", layer.file.string(), std::max(1U, line), name.empty() ? "" : " ", name);
+    return fmt::format("{}:{}:{}{}", layer.file.string(), line(key), name.empty() ? "" : " ", name);
 }
 
 void TomlTable::fail(const std::string& key, const std::string& message) const {

@@ -45,6 +45,7 @@ class TomlTable {
     double any_number(const std::string& key);
     [[nodiscard]] bool is_number(const std::string& key) const;
     [[nodiscard]] bool is_text(const std::string& key) const;
+    [[nodiscard]] bool is_text_list(const std::string& key) const;
     [[nodiscard]] bool is_table(const std::string& key) const;
     /// 1 where the key's value is inf, -1 where it is -inf, else 0.
     int infinity(const std::string& key);
@@ -74,6 +75,8 @@ class TomlTable {
     /// Refuses keys that were not read.
     void finish() const;
 
+    /// Of a key, of the table itself where it is absent; from 1.
+    [[nodiscard]] int line(const std::string& key) const;
     /// "file:line: path.key" of a key (of the table itself where the key is empty or absent).
     [[nodiscard]] std::string where(const std::string& key = "") const;
     /// Throws InputError "where(key): message".

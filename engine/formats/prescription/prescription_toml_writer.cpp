@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "engine/base/infinity.h"
-#include "engine/base/json.h"
+#include "engine/base/toml_text.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
 namespace lensproof::formats {
@@ -38,71 +38,6 @@ std::string pairs(const std::vector<optics::WavelengthValue>& values) {
 /// What holds at every wavelength, or a table.
 std::string number_or_pairs(const std::vector<optics::WavelengthValue>& values) {
     return values.size() == 1 ? number(values.front().value) : pairs(values);
-}
-
-/// `bytes` with whatever is not UTF-8 replaced by U+FFFD, since a TOML file may hold nothing else.
-std::string valid_utf8(std::string_view bytes) {
-    return Json::parse(Json(bytes).dump(), "").text();
-}
-
-/// `letter` where it may not stand as it is between quotes.
-std::string escaped(char letter) {
-    switch (letter) {
-        case '\\':
-            return "\\\\";
-        case '"':
-            return "\\\"";
-        case '\n':
-            return "\\n";
-        case '\r':
-            return "\\r";
-        case '\t':
-            return "\\t";
-        default:
-            break;
-    }
-    const auto code = static_cast<unsigned char>(letter);
-    return code < 0x20 || code == 0x7f ? fmt::format("\\u{:04X}", code) : std::string(1, letter);
-}
-
-std::string toml_string(std::string_view bytes) {
-    std::string text = "\"";
-    for (const char letter : valid_utf8(bytes)) {
-        text += escaped(letter);
-    }
-    return text + '"';
-}
-
-/// Lines as they are, between triple quotes; a single line in single ones.
-std::string paragraph(std::string_view bytes) {
-    if (bytes.find('\n') == std::string_view::npos) {
-        return toml_string(bytes);
-    }
-    std::string text = "\"\"\"\n";
-    char last = '\0';
-    for (const char letter : valid_utf8(bytes)) {
-        const bool plain = letter == '\n' || letter == '\t' || (letter == '"' && last != '"');
-        text += plain ? std::string(1, letter) : escaped(letter);
-        last = letter;
-    }
-    if (last == '"' && !text.ends_with("\\\"")) {
-        text.insert(text.size() - 1, "\\");
-    }
-    return text + "\"\"\"";
-}
-
-std::string toml_strings(const std::vector<std::string>& texts) {
-    std::vector<std::string> each;
-    std::ranges::transform(texts, std::back_inserter(each), toml_string);
-    return fmt::format("[{}]", fmt::join(each, ", "));
-}
-
-std::string key_name(const std::string& name) {
-    const bool bare = !name.empty() && std::ranges::all_of(name, [](char letter) {
-        return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-               (letter >= '0' && letter <= '9') || letter == '-' || letter == '_';
-    });
-    return bare ? name : toml_string(name);
 }
 
 bool is_plain(const std::string& cell) {
@@ -220,7 +155,7 @@ class Writer {
             line("makers", toml_strings(lens.preferred_makers));
         }
         if (!lens.notes.empty()) {
-            line("notes", paragraph(lens.notes));
+            line("notes", toml_paragraph(lens.notes));
         }
     }
 
@@ -443,7 +378,7 @@ class Writer {
     }
 
     void write_coating(const std::string& name, const optics::Coating& coating) {
-        text_ += fmt::format("\n[coatings.{}]\n", key_name(name));
+        text_ += fmt::format("\n[coatings.{}]\n", toml_key(name));
         if (const auto* stack = std::get_if<optics::LayerStack>(&coating)) {
             std::vector<std::string> each;
             std::ranges::transform(stack->layers, std::back_inserter(each), layer_text);
