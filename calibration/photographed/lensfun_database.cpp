@@ -371,6 +371,15 @@ PhotographedLens LensfunDatabase::find(const LensfunQuery& query) const {
                         query.projection ? fmt::format(" as {}", optics::projection_name(*query.projection)) : "",
                         fmt::join(lines, "; ")));
     }
+    if (query.sensor_crop_factor) {
+        const auto fit = [&](const lfLens* entry) {
+            const double crop = entry->CropFactor;
+            return crop < *query.sensor_crop_factor * (1.0 + kSameCrop) ? crop
+                                                                        : -crop;  // sensors that are too small last
+        };
+        const double best = fit(*std::ranges::max_element(found, {}, fit));
+        std::erase_if(found, [&](const lfLens* entry) { return std::abs(fit(entry) / best - 1.0) > kSameCrop; });
+    }
     PhotographedLens lens = lens_of(*found.front(), query.focal_length_mm);
     for (const lfLens* other : found) {
         if (!is_same_calibration(lens_of(*other, query.focal_length_mm), lens)) {

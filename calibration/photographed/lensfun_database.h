@@ -16,6 +16,9 @@ namespace lensproof::calibration {
 struct LensfunQuery {
     std::string model;                    // in any of the entry's languages, with or without the maker before
     std::optional<double> crop_factor{};  // needed where a model was calibrated on several sensors
+    /// In its place: of several the one that was calibrated on the smallest sensor that holds one of this crop factor,
+    /// else on the largest of all.
+    std::optional<double> sensor_crop_factor{};
     std::optional<optics::Projection> projection{};  // needed where it was calibrated as several
     double focal_length_mm = 0.0;                    // for a zoom: lensfun interpolates its calibrations
 };

@@ -20,15 +20,6 @@ double radius_of(const RadialPolynomial& polynomial, double r) {
     return sum;
 }
 
-/// Where photographed_radius is `radius_mm`, at most where photographs end.
-double ideal_radius(const PhotographedLens& lens, double radius_mm) {
-    const double covered = ideal_radius_covered(lens, 4.0 * lens.half_diagonal_mm());
-    constexpr int kHalvings = 60;
-    return bisected({.inside = 0.0, .outside = covered}, kHalvings,
-                    [&](double ideal_mm) { return photographed_radius(lens, ideal_mm) <= radius_mm; })
-        .inside;
-}
-
 }  // namespace
 
 double MeasuredVignetting::brightness(double share) const {
@@ -74,12 +65,24 @@ double ideal_radius_covered(const PhotographedLens& lens, double largest_mm) {
     return covered;
 }
 
+std::optional<double> ideal_radius(const PhotographedLens& lens, double radius_mm) {
+    const double covered = ideal_radius_covered(lens, 4.0 * lens.half_diagonal_mm());
+    if (photographed_radius(lens, covered) < radius_mm) {
+        return std::nullopt;
+    }
+    constexpr int kHalvings = 60;
+    return bisected({.inside = 0.0, .outside = covered}, kHalvings,
+                    [&](double ideal_mm) { return photographed_radius(lens, ideal_mm) <= radius_mm; })
+        .inside;
+}
+
 double channel_shift(const PhotographedLens& lens, const ChannelRadius& channel, double radius_mm) {
     if (const auto* scale = std::get_if<ChannelScale>(&channel)) {
         const double r = radius_mm / lens.unit_mm();
         return radius_mm * (scale->v - 1.0 + r * (scale->c + r * scale->b));
     }
-    const double ideal_mm = ideal_radius(lens, radius_mm);
+    const double ideal_mm =
+        ideal_radius(lens, radius_mm).value_or(ideal_radius_covered(lens, 4.0 * lens.half_diagonal_mm()));
     return radius_of(std::get<RadialPolynomial>(channel), ideal_mm / lens.unit_mm()) * lens.unit_mm() -
            photographed_radius(lens, ideal_mm);
 }

@@ -77,6 +77,9 @@ double photographed_slope(const PhotographedLens& lens, double ideal_mm);
 /// at most `largest_mm`.
 double ideal_radius_covered(const PhotographedLens& lens, double largest_mm);
 
+/// The ideal radius (mm) of what is photographed at `radius_mm`; nothing beyond where photographs go.
+std::optional<double> ideal_radius(const PhotographedLens& lens, double radius_mm);
+
 /// How far the channel's image lies outside of green's (mm), where green's is at `radius_mm`.
 double channel_shift(const PhotographedLens& lens, const ChannelRadius& channel, double radius_mm);
 

@@ -21,6 +21,11 @@ void append(Curve& curve, double image_height, const Banded& sample) {
     curve.upper_95.push_back(sample.upper_95);
 }
 
+void append_exact(Curve& curve, double image_height, double value) {
+    append(curve, image_height, {.value = value, .lower_95 = value, .upper_95 = value});
+    curve.covered_image_height = image_height;
+}
+
 std::optional<Banded> sample(const Curve& curve, double image_height) {
     const auto& heights = curve.image_height;
     if (heights.empty() || !(image_height >= heights.front() && image_height <= heights.back())) {

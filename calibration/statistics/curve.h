@@ -33,6 +33,9 @@ std::vector<double> standard_image_heights();
 
 void append(Curve& curve, double image_height, const Banded& sample);
 
+/// A sample that has no error, up to which the curve is covered then.
+void append_exact(Curve& curve, double image_height, double value);
+
 /// The curve at `image_height`, linear between samples; none outside them.
 std::optional<Banded> sample(const Curve& curve, double image_height);
 

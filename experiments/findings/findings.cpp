@@ -47,6 +47,11 @@ void append(Findings& all, Findings more) {
     }
     move_to(all.profiles, more.profiles);
     move_to(all.inputs, more.inputs);
+    for (std::string& sentence : more.not_shown) {
+        if (std::ranges::find(all.not_shown, sentence) == all.not_shown.end()) {
+            all.not_shown.push_back(std::move(sentence));
+        }
+    }
 }
 
 Verdict overall(const Findings& found) {

@@ -127,9 +127,11 @@ struct Findings {
     std::vector<std::pair<std::string, Json>> tables{};  // numbers for programs, by their key in report.json
     std::vector<calibration::Profile> profiles{};        // of measured cameras, each named as its subject's id
     std::vector<std::filesystem::path> inputs{};         // files that they depend on
+    std::vector<std::string> not_shown{};                // what the findings must not be taken for, in sentences
 };
 
-/// Adds `more` to `all`. Plots of the same id become one, with the tighter limit; lists of the same key become one.
+/// Adds `more` to `all`. Plots of the same id become one, with the tighter limit; lists of the same key become one;
+/// what is not shown is said once.
 void append(Findings& all, Findings more);
 
 /// That of the checks; where a study failed, it is INCONCLUSIVE at best.

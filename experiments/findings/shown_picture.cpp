@@ -1,6 +1,8 @@
 #include "experiments/findings/shown_picture.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <utility>
 
 namespace lensproof::findings {
 
@@ -27,6 +29,11 @@ formats::Image shrunk(const formats::Image& image, int widest) {
     return small;
 }
 
+double attribute_of(const std::string& svg, const std::string& name) {
+    const std::size_t at = svg.find(name + "=\"");
+    return at == std::string::npos ? 0.0 : std::strtod(svg.c_str() + at + name.size() + 2, nullptr);
+}
+
 }  // namespace
 
 Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image, int widest) {
@@ -36,6 +43,16 @@ Picture shown_picture(const std::string& name, const std::string& caption, const
             .height = image.height,
             .bytes = name.ends_with(".jpg") ? formats::encode_jpeg(shrunk(image, widest))
                                             : formats::encode_png(shrunk(image, widest))};
+}
+
+Picture drawn_picture(const std::string& name, const std::string& caption, std::string svg) {
+    Picture picture{.name = name,
+                    .caption = caption,
+                    .width = attribute_of(svg, "width"),
+                    .height = attribute_of(svg, "height"),
+                    .bytes = {}};
+    picture.bytes = std::move(svg);
+    return picture;
 }
 
 std::string laid_picture(const formats::Image& image) {

@@ -14,6 +14,9 @@ inline constexpr int kShownWidth = 480;  // px: a report holds many pictures
 Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image,
                       int widest = kShownWidth);
 
+/// A drawing (SVG), as large as it says.
+Picture drawn_picture(const std::string& name, const std::string& caption, std::string svg);
+
 inline constexpr int kLaidWidth = 960;  // px, of pictures to be laid over each other
 
 /// A copy as JPEG, smaller in the same way.

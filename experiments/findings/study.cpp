@@ -5,8 +5,19 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
+
+#include "experiments/findings/varied.h"
 
 namespace lensproof::findings {
+
+std::vector<TomlTable> ExperimentFile::tables(const std::string& key) {
+    std::vector<TomlTable> tables;
+    for (Varied& one : varied_tables(top, key)) {
+        tables.push_back(std::move(one.table));
+    }
+    return tables;
+}
 
 void ExperimentFile::add_subject(const TomlTable& table, const std::string& key, const std::string& id) {
     if (!subjects.insert(id).second) {

@@ -51,6 +51,8 @@ struct ExperimentFile {
     std::map<std::string, std::filesystem::path> manifests{};  // of those that were photographed
     std::set<std::string> subjects{};  // the ids of what will be reported, as far as the file says them
 
+    /// The tables of a kind, where `vary` makes many of one each of them (varied.h).
+    std::vector<TomlTable> tables(const std::string& key);
     /// Takes an id that `key` makes: files are named by it, and curves and checks refer to it. Throws InputError where
     /// another table has it.
     void add_subject(const TomlTable& table, const std::string& key, const std::string& id);

@@ -200,6 +200,9 @@ Json report_json(const ReportHead& head, const findings::Findings& found) {
     for (const findings::Map& map : found.maps) {
         report["maps"].push_back({{"name", map.name}, {"subject", map.subject}, {"caption", map.caption}});
     }
+    for (const std::string& sentence : found.not_shown) {
+        report["not_shown"].push_back(sentence);
+    }
     report["provenance"] = provenance_json(found.inputs, head.settings);
     report["reproduce"] = head.reproduce;
     return report;

@@ -331,6 +331,18 @@ std::string failures_html(const Json& report) {
                : "<h3>Studies that came to no end</h3>\n<table class=\"facts\"><tbody>\n" + rows + "</tbody></table>\n";
 }
 
+std::string not_shown_html(const Json& report) {
+    std::string items;
+    for (const Json& sentence : report["not_shown"]) {
+        items += "<li>" + escape_markup(as_text(sentence)) + "</li>\n";
+    }
+    return items.empty()
+               ? ""
+               : "<section id=\"not-shown\" aria-labelledby=\"h-not-shown\"><h2 id=\"h-not-shown\">What this does "
+                 "not show</h2>\n<ul>\n" +
+                     items + "</ul></section>\n";
+}
+
 std::string against_html(const Json& report) {
     const Json& against = report["against"];
     if (!against.is_object()) return "";
@@ -376,6 +388,7 @@ std::string report_html(const Json& report, const std::map<std::string, std::str
                                                 {"curves", curves_html(report)},
                                                 {"maps", maps_html(report, files)},
                                                 {"subjects", subjects_html(report, files)},
+                                                {"not_shown", not_shown_html(report)},
                                                 {"provenance", provenance_html(report)},
                                                 {"reproduce", reproduce_html(report)},
                                                 {"data", json_for_script(report)}});

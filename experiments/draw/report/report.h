@@ -58,6 +58,7 @@ namespace lensproof::draw {
 ///                                       for a difference,
 ///                             "covered_to"?: beyond this x the data ended, and the curve is drawn faded}]}],
 ///      "maps"?: [{"name", "subject"?, "caption"?}],         drawings over the frame, after the plots
+///      "not_shown"?: [sentences],                           what the report must not be taken for
 ///      "provenance"?: {"program", "version", "commit", "libraries", "inputs": [{"file", "sha256"}],
 ///                      "settings": {…}, …},
 ///      "reproduce"?: "lensproof run …"}

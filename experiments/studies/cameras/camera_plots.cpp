@@ -70,7 +70,7 @@ class CameraPlots {
             {.label = label, .subject = camera_.subject.id, .style = style, .curve = curve, .floor = floor});
     }
 
-    /// And what is traced of it.
+    /// And what is traced of it, and what others say.
     void add_measured(const std::string& curve, const std::string& suffix = "") {
         const std::string label = camera_.subject.id + suffix;
         if (const calibration::Curve* found = find_curve(camera_.profile, curve)) {
@@ -78,6 +78,11 @@ class CameraPlots {
         }
         if (const calibration::Curve* found = camera_.traced ? find_curve(*camera_.traced, curve) : nullptr) {
             add(label + ", traced", "reference", *found, std::nullopt);
+        }
+        for (const calibration::Profile& reference : camera_.references) {
+            if (const calibration::Curve* found = find_curve(reference, curve)) {
+                add(label + ", " + reference.name, "reference", *found, std::nullopt);
+            }
         }
     }
 

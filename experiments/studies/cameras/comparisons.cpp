@@ -7,6 +7,7 @@
 
 #include "engine/base/input_error.h"
 #include "experiments/studies/cameras/measured_camera.h"
+#include "experiments/studies/cameras/reference_curves.h"
 
 namespace lensproof::studies {
 
@@ -15,6 +16,7 @@ namespace {
 struct Comparison {
     std::string of;
     std::string with;
+    std::optional<ReferenceSource> reference;  // in place of another camera
     std::string curve;
     std::optional<double> limit;
     findings::Expectation expectation = findings::Expectation::at_most;
@@ -24,7 +26,10 @@ Comparison read_one(TomlTable& table, const std::set<std::string>& cameras) {
     Comparison comparison;
     for (const auto& [key, name] : {std::pair{"of", &comparison.of}, std::pair{"with", &comparison.with}}) {
         *name = table.text(key);
-        if (!cameras.contains(*name)) {
+        if (name == &comparison.with && is_reference(*name)) {
+            comparison.reference = read_reference(table, key, *name);
+            comparison.with = comparison.reference->label();
+        } else if (!cameras.contains(*name)) {
             table.fail(key,
                        fmt::format("is \"{}\", which is neither a simulation nor a photo set of this file", *name));
         }
@@ -89,12 +94,16 @@ findings::Findings compare_all(const std::vector<Comparison>& comparisons,
             return *named;
         };
         const calibration::Profile& of = profile(comparison.of);
-        const calibration::Profile& with = profile(comparison.with);
+        const calibration::Profile with =
+            comparison.reference ? reference_curves(*comparison.reference, of, 0.0) : profile(comparison.with);
         const auto difference = calibration::difference(of, with, comparison.curve);
         // Neither measurement knows of the other's error.
         const std::optional<double> one = rms_floor(of, comparison.curve);
         const std::optional<double> other = rms_floor(with, comparison.curve);
         const std::optional<double> floor = one && other ? std::optional(std::hypot(*one, *other)) : std::nullopt;
+        if (comparison.reference && !comparison.reference->file.empty()) {
+            found.inputs.push_back(comparison.reference->file);
+        }
         if (comparison.limit) {
             found.checks.push_back(make_check(comparison, difference, floor));
         }
@@ -115,7 +124,7 @@ findings::Findings compare_all(const std::vector<Comparison>& comparisons,
 
 std::vector<findings::Study> read_comparisons(findings::ExperimentFile& file) {
     std::vector<Comparison> comparisons;
-    for (TomlTable& table : file.top.tables("comparisons")) {
+    for (TomlTable& table : file.tables("comparisons")) {
         comparisons.push_back(read_one(table, file.cameras));
     }
     if (comparisons.empty()) {

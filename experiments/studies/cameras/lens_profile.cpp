@@ -1,5 +1,7 @@
 #include "experiments/studies/cameras/lens_profile.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <string>
 
 #include "engine/base/angle.h"
+#include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/illumination.h"
@@ -113,11 +116,6 @@ PerChannel light_at(const std::vector<optics::TraceLens<double>>& strata, const 
     return light;
 }
 
-void append_exact(calibration::Curve& curve, double image_height, double value) {
-    calibration::append(curve, image_height, {.value = value, .lower_95 = value, .upper_95 = value});
-    curve.covered_image_height = image_height;
-}
-
 void add_geometry(const render::Camera& camera, double half_diagonal_mm, calibration::Profile& profile) {
     const HeightTable table = chief_ray_heights(camera);
     const double pitch_mm = camera.sensor().pixel_pitch_mm;
@@ -129,16 +127,16 @@ void add_geometry(const render::Camera& camera, double half_diagonal_mm, calibra
             break;
         }
         const double angle = row->field_angle;
-        append_exact(profile.curves[kQuantities.field_angle.key()], x, angle / kDegree);
+        calibration::append_exact(profile.curves[kQuantities.field_angle.key()], x, angle / kDegree);
         if (angle < 89.0 * kDegree) {
-            append_exact(profile.curves[kQuantities.distortion.key()], x,
-                         x > 0.0 ? 100.0 * (r / (focal * std::tan(angle)) - 1.0) : 0.0);
+            calibration::append_exact(profile.curves[kQuantities.distortion.key()], x,
+                                      x > 0.0 ? 100.0 * (r / (focal * std::tan(angle)) - 1.0) : 0.0);
         }
-        append_exact(profile.curves[kQuantities.equidistant_distortion.key()], x,
-                     x > 0.0 ? 100.0 * (r / (focal * angle) - 1.0) : 0.0);
+        calibration::append_exact(profile.curves[kQuantities.equidistant_distortion.key()], x,
+                                  x > 0.0 ? 100.0 * (r / (focal * angle) - 1.0) : 0.0);
         for (const int c : {0, 2}) {
-            append_exact(profile.curves[kQuantities.chromatic_shift.key(kChannels[c])], x,
-                         (row->height[c] - row->height[kGreen]) / pitch_mm);
+            calibration::append_exact(profile.curves[kQuantities.chromatic_shift.key(kChannels[c])], x,
+                                      (row->height[c] - row->height[kGreen]) / pitch_mm);
         }
     }
 }
@@ -155,14 +153,22 @@ void add_vignetting(const render::Camera& camera, double half_diagonal_mm, calib
         for (std::size_t c = 0; c < 3; ++c) {
             const double ratio = light[i][c] / light[0][c];
             if (ratio > 0.0) {
-                append_exact(profile.curves[kQuantities.vignetting.key(kChannels[c])], heights[i], ratio);
-                append_exact(profile.curves[kQuantities.vignetting_ev.key(kChannels[c])], heights[i], std::log2(ratio));
+                calibration::append_exact(profile.curves[kQuantities.vignetting.key(kChannels[c])], heights[i], ratio);
+                calibration::append_exact(profile.curves[kQuantities.vignetting_ev.key(kChannels[c])], heights[i],
+                                          std::log2(ratio));
             }
         }
     }
 }
 
 }  // namespace
+
+render::CameraSettings camera_like(const calibration::Profile& like, const std::string& lens) {
+    if (!like.pixel_pitch_um) {
+        throw InputError(fmt::format("{}: has no pixel_pitch_um, which {} needs to be set beside it", like.name, lens));
+    }
+    return {.lens = lens, .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3}, .response = "camera"};
+}
 
 calibration::Profile lens_profile(const render::Camera& camera) {
     calibration::Profile profile;

@@ -14,4 +14,8 @@ namespace lensproof::studies {
 /// Curves reach as far as chief rays do. Vignetting includes the Fresnel transmittance.
 calibration::Profile lens_profile(const render::Camera& camera);
 
+/// A lens before the sensor of the camera whose profile `like` is. Throws InputError where its pixel pitch is not
+/// known.
+render::CameraSettings camera_like(const calibration::Profile& like, const std::string& lens);
+
 }  // namespace lensproof::studies

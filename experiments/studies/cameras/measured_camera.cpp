@@ -76,17 +76,39 @@ Json stated_model(const std::optional<calibration::ModelKind>& model) {
     return model ? Json(calibration::kind_name(calibration::empty_model(*model))) : Json();
 }
 
+static constexpr const char* kMeasuredStep = "measured";
+static constexpr const char* kSelfTestStep = "self-test";
+
+std::vector<findings::PlannedStep> steps_of_measurement(const std::string& name, const findings::StepInput& stated,
+                                                        const findings::RunSettings& settings) {
+    std::vector<findings::PlannedStep> steps = {{kMeasuredStep, name + ", measuring", stated, 3.0}};
+    if (settings.self_test) {
+        steps.push_back({kSelfTestStep, name + ", self-test", stated, 3.0});
+    }
+    return steps;
+}
+
 calibration::Profile measured_in_steps(const findings::RunSettings& settings, const findings::StepInput& stated,
                                        const calibration::MeasureInput& input,
                                        calibration::Profile (*measure)(const calibration::MeasureInput&)) {
-    calibration::Profile profile = settings.steps.step("measured", stated, [&] { return measure(input); });
+    calibration::Profile profile = settings.steps.step(kMeasuredStep, stated, [&] { return measure(input); });
     if (!settings.self_test) {
         return profile;
     }
-    return settings.steps.step("self-test", stated, [&] {
+    return settings.steps.step(kSelfTestStep, stated, [&] {
         calibration::add_self_test(profile, input);
         return profile;
     });
+}
+
+/// "0.1207 px, held out 0.1241 px, corners ± 0.21 px: chosen"
+static std::string candidate_words(const calibration::ModelCandidate& tried, bool is_chosen) {
+    if (!tried.refused.empty()) {
+        return tried.refused;
+    }
+    return fmt::format("{:.4f} px, held out {:.4f} px{}{}", tried.rms_px, tried.held_out_rms_px,
+                       tried.corner_px ? fmt::format(", corners ± {:.2g} px", *tried.corner_px) : "",
+                       is_chosen ? ": chosen" : "");
 }
 
 void add_view(findings::Picture& picture, const calibration::ProfileView& view) {
@@ -113,6 +135,14 @@ void add_profile_facts(MeasuredCamera& camera) {
                              fmt::format("{:.4f} ± {:.4f} mm",
                                          calibration::focal_length_px(geometry.model) * *profile.pixel_pitch_um / 1e3,
                                          geometry.standard_error(0) * *profile.pixel_pitch_um / 1e3)});
+        }
+        if (geometry.choice) {
+            for (std::size_t i = 0; i < geometry.choice->candidates.size(); ++i) {
+                const calibration::ModelCandidate& tried = geometry.choice->candidates[i];
+                facts.push_back({"model tried: " + tried.name,
+                                 candidate_words(tried, static_cast<int>(i) == geometry.choice->chosen)});
+            }
+            facts.push_back({"chosen, because", geometry.choice->why});
         }
         facts.push_back({"reprojection rms", fmt::format("{:.4f} px", geometry.reprojection_rms_px)});
         facts.push_back({"points, views", fmt::format("{}, {}", geometry.points_used, geometry.views_used)});

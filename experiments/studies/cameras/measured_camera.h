@@ -29,6 +29,7 @@ struct MeasuredCamera {
     calibration::Profile profile;
     std::optional<calibration::Profile> traced;  // the lens's own rays, for a simulation
     std::vector<FarPoint> far_points{};
+    std::vector<calibration::Profile> references{};  // what others say of its lens, each by its name
 };
 
 /// The profile that `measure` makes of the input, and its self-test where the settings ask for one: a step each, which
@@ -36,6 +37,10 @@ struct MeasuredCamera {
 calibration::Profile measured_in_steps(const findings::RunSettings& settings, const findings::StepInput& stated,
                                        const calibration::MeasureInput& input,
                                        calibration::Profile (*measure)(const calibration::MeasureInput&));
+
+/// These steps of the camera `name`, before they are asked for.
+std::vector<findings::PlannedStep> steps_of_measurement(const std::string& name, const findings::StepInput& stated,
+                                                        const findings::RunSettings& settings);
 
 /// What was found in the picture, and why it was left out.
 void add_view(findings::Picture& picture, const calibration::ProfileView& view);

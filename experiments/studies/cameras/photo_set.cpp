@@ -44,8 +44,12 @@ PhotoSet read_photo_set(const fs::path& manifest) {
     set.licence = top.text("licence");
     set.source = top.text("source");
     set.pixel_pitch_um = top.optional_number("pixel_pitch_um", kPositive);
-    TomlTable chart = top.table("chart");
-    set.chart = scene::read_chart(chart);
+    if (top.is_text("chart")) {
+        set.chart = scene::read_chart_file(referred_file(manifest, top.text("chart")));
+    } else {
+        TomlTable chart = top.table("chart");
+        set.chart = scene::read_chart(chart);
+    }
     const std::vector<std::string> photos = top.texts("photos");
     const std::vector<std::string> flat_fields =
         top.has("flat_fields") ? top.texts("flat_fields") : std::vector<std::string>{};

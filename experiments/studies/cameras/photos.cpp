@@ -13,6 +13,7 @@
 #include "experiments/findings/shown_picture.h"
 #include "experiments/studies/cameras/measured_camera.h"
 #include "experiments/studies/cameras/photo_set.h"
+#include "experiments/studies/cameras/reference_curves.h"
 
 namespace lensproof::studies {
 
@@ -32,6 +33,7 @@ struct Photos {
     PhotoSet set;
     std::optional<calibration::ModelKind> model;
     PhotoExpectations expected;
+    std::vector<ReferenceSource> references;
 };
 
 Photos read_one(TomlTable& table, findings::ExperimentFile& file) {
@@ -39,6 +41,7 @@ Photos read_one(TomlTable& table, findings::ExperimentFile& file) {
     photos.name = read_camera_name(table, file);
     photos.manifest = referred_file(table.file(), table.text("manifest"));
     photos.model = read_model(table);
+    photos.references = read_references(table);
     if (auto expected = table.optional_table("expected")) {
         if (expected->has("focal_length_px")) {
             photos.expected.focal_length_px = expected->number("focal_length_px", kPositive);
@@ -98,12 +101,17 @@ void add_account(MeasuredCamera& camera) {
     }
 }
 
-MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings& settings,
-                              const findings::RunProgress& progress) {
+constexpr const char* kPhotoStep = "photo";
+constexpr const char* kFarPointsStep = "far points";
+
+/// What decides beside its bytes whether a picture is read.
+Json reading() {
+    return {{"largest_picture_mib", formats::largest_picture_mib()}, {"untrusted", files_are_distrusted()}};
+}
+
+/// Reads the photos' headers.
+calibration::MeasureInput surveyed(const Photos& photos, const findings::RunSettings& settings) {
     const PhotoSet& set = photos.set;
-    MeasuredCamera camera{
-        .subject = {.id = photos.name, .kind = "photos", .label = set.name}, .profile = {}, .traced = {}};
-    std::vector<findings::Picture>& pictures = camera.subject.pictures;
     calibration::MeasureInput input{.name = photos.name,
                                     .pictures = {},
                                     .chart = set.chart,
@@ -116,13 +124,59 @@ MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings&
     for (std::size_t i = 0; i < set.focus_positions_mm.size(); ++i) {
         input.focus_position_mm[set.photos[i].string()] = set.focus_positions_mm[i];
     }
-    // What decides beside its bytes whether a picture is read.
-    const Json reading{{"largest_picture_mib", formats::largest_picture_mib()}, {"untrusted", files_are_distrusted()}};
+    return input;
+}
+
+findings::StepInput photo_input(const calibration::Picture& picture) {
+    return {.settings = reading(), .files = {picture.name}};
+}
+
+/// Of all that is measured in the pictures.
+findings::StepInput measured_input(const Photos& photos, const calibration::MeasureInput& input) {
+    findings::StepInput all{
+        .settings = {{"name", photos.name}, {"model", stated_model(photos.model)}, {"reading", reading()}},
+        .files = {photos.manifest}};
+    for (const calibration::Picture& picture : input.pictures) {
+        all.settings["pictures"].push_back(picture.name);
+        all.files.emplace_back(picture.name);
+    }
+    return all;
+}
+
+std::string words_of(const Photos& photos, const calibration::Picture& picture) {
+    return fmt::format("{}, {}", photos.name, std::filesystem::path(picture.name).filename().string());
+}
+
+std::vector<findings::PlannedStep> steps_of(const Photos& photos, const findings::RunSettings& settings) {
+    const calibration::MeasureInput input = surveyed(photos, settings);
+    std::vector<findings::PlannedStep> steps;
+    for (const calibration::Picture& picture : input.pictures) {
+        steps.push_back({kPhotoStep, words_of(photos, picture), photo_input(picture), 0.2});
+    }
+    const findings::StepInput all = measured_input(photos, input);
+    std::ranges::move(steps_of_measurement(photos.name, all, settings), std::back_inserter(steps));
+    steps.push_back({kFarPointsStep, photos.name + ", points that are far off", all, 0.2});
+    return steps;
+}
+
+/// As the camera noted it; 0 where it did not.
+double f_number_of(const calibration::Profile& profile) {
+    const auto& notes = profile.source.notes;
+    return notes && notes->f_number ? *notes->f_number : 0.0;
+}
+
+MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings& settings,
+                              const findings::RunProgress& progress) {
+    const PhotoSet& set = photos.set;
+    MeasuredCamera camera{
+        .subject = {.id = photos.name, .kind = "photos", .label = set.name}, .profile = {}, .traced = {}};
+    std::vector<findings::Picture>& pictures = camera.subject.pictures;
+    const calibration::MeasureInput input = surveyed(photos, settings);
     for (const calibration::Picture& picture : input.pictures) {
         const std::filesystem::path file = picture.name;
-        progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
+        progress(words_of(photos, picture), 0.0);
         const ShownPhoto shown =
-            settings.steps.step("photo", {.settings = reading, .files = {file}}, [&] { return shown_photo(picture); });
+            settings.steps.step(kPhotoStep, photo_input(picture), [&] { return shown_photo(picture); });
         pictures.push_back(
             {.name = fmt::format("{}/{:02}-{}.png", photos.name, pictures.size() + 1, file.stem().string()),
              .caption = file.filename().string(),
@@ -131,16 +185,11 @@ MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings&
              .bytes = shown.png});
     }
     progress(photos.name + ", measuring", 0.0);
-    findings::StepInput all{
-        .settings = {{"name", photos.name}, {"model", stated_model(photos.model)}, {"reading", reading}},
-        .files = {photos.manifest}};
-    for (const calibration::Picture& picture : input.pictures) {
-        all.settings["pictures"].push_back(picture.name);
-        all.files.emplace_back(picture.name);
-    }
+    const findings::StepInput all = measured_input(photos, input);
     camera.profile = measured_in_steps(settings, all, input, calibration::measure_surveyed);
+    add_references(photos.references, camera, f_number_of(camera.profile));
     camera.far_points =
-        settings.steps.step("far points", all, [&] { return far_points(camera.profile, input.pictures); });
+        settings.steps.step(kFarPointsStep, all, [&] { return far_points(camera.profile, input.pictures); });
     for (std::size_t i = 0, view = 0; i < pictures.size(); ++i) {
         if (input.pictures[i].role == calibration::PictureRole::chart) {
             add_view(pictures[i], camera.profile.views.at(view++));
@@ -200,20 +249,26 @@ std::vector<findings::Check> photo_checks(const MeasuredCamera& camera, const Ph
 
 std::vector<findings::Study> read_photos(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("photos")) {
-        Photos photos = read_one(table, file);
-        std::string name = photos.name;
-        studies.push_back({std::move(name), [photos = std::move(photos)](const findings::RunSettings& settings,
-                                                                         const findings::RunProgress& progress,
-                                                                         const findings::Findings&) {
-                               MeasuredCamera camera = measure_photos(photos, settings, progress);
-                               findings::Findings found{.checks = photo_checks(camera, photos.expected)};
-                               findings::append(found, camera_findings(std::move(camera)));
-                               found.inputs.push_back(photos.manifest);
-                               std::ranges::copy(photos.set.photos, std::back_inserter(found.inputs));
-                               std::ranges::copy(photos.set.flat_fields, std::back_inserter(found.inputs));
-                               return found;
-                           }});
+    for (TomlTable& table : file.tables("photos")) {
+        const Photos photos = read_one(table, file);
+        const auto carry_out = [photos](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                                        const findings::Findings&) {
+            MeasuredCamera camera = measure_photos(photos, settings, progress);
+            findings::Findings found{.checks = photo_checks(camera, photos.expected)};
+            findings::append(found, camera_findings(std::move(camera)));
+            found.not_shown = {
+                "Photos show one copy of a lens at one focus, aperture and temperature.",
+                "The chart is taken to be flat and as large as stated; a bent or misprinted one goes into the lens's "
+                "numbers, as far as their residuals do not show it.",
+                "Beyond the outermost points nothing was measured: curves there are the model's, faded and hatched."};
+            found.inputs.push_back(photos.manifest);
+            std::ranges::move(files_of(photos.references), std::back_inserter(found.inputs));
+            std::ranges::copy(photos.set.photos, std::back_inserter(found.inputs));
+            std::ranges::copy(photos.set.flat_fields, std::back_inserter(found.inputs));
+            return found;
+        };
+        studies.push_back({photos.name, carry_out,
+                           [photos](const findings::RunSettings& settings) { return steps_of(photos, settings); }});
     }
     return studies;
 }

@@ -39,6 +39,7 @@ Simulation read_simulation(TomlTable& table, findings::ExperimentFile& file) {
     Simulation simulation;
     simulation.name = read_camera_name(table, file);
     simulation.model = read_model(table);
+    simulation.references = read_references(table);
     simulation.flat_field = table.boolean_or("flat_field", true);
     simulation.flat_field_samples_per_pixel =
         table.integer_or("flat_field_samples_per_pixel", simulation.flat_field_samples_per_pixel, 1, 1 << 20);
@@ -144,7 +145,7 @@ void add_facts(MeasuredCamera& measured, const Simulation& simulation, const ren
 
 std::vector<Simulation> simulations_of(findings::ExperimentFile& file) {
     std::vector<Simulation> simulations;
-    for (TomlTable& table : file.top.tables("simulations")) {
+    for (TomlTable& table : file.tables("simulations")) {
         simulations.push_back(read_simulation(table, file));
     }
     // Without a simulation that reads them, they would be refused as unknown keys.
@@ -155,48 +156,124 @@ std::vector<Simulation> simulations_of(findings::ExperimentFile& file) {
     return simulations;
 }
 
+namespace {
+
+constexpr const char* kViewStep = "view";
+constexpr const char* kTracedStep = "traced";
+
+/// One of the pictures that a simulation takes.
+struct SimulatedPicture {
+    std::string file;
+    std::string caption;
+    std::string words;  // of progress
+    calibration::PictureRole role = calibration::PictureRole::chart;
+    scene::Chart chart;
+    scene::Placement placement;
+    int samples_per_pixel = 0;
+    Json stated;
+};
+
+std::vector<SimulatedPicture> pictures_of(const Simulation& simulation) {
+    std::vector<SimulatedPicture> pictures;
+    const std::size_t count = simulation.views.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        pictures.push_back({.file = fmt::format("view-{}", i + 1),
+                            .caption = describe(simulation.views[i]),
+                            .words = fmt::format("view {} of {}", i + 1, count),
+                            .role = calibration::PictureRole::chart,
+                            .chart = simulation.scene.chart->chart,
+                            .placement = simulation.views[i],
+                            .samples_per_pixel = simulation.scene.samples_per_pixel,
+                            .stated = simulation.stated_views[i]});
+    }
+    if (simulation.flat_field) {
+        pictures.push_back({.file = "flat-field",
+                            .caption = "flat field",
+                            .words = "flat field",
+                            .role = calibration::PictureRole::flat_field,
+                            .chart = {.pattern = scene::FlatField{}},
+                            .placement = {.distance_mm = 1000.0},
+                            .samples_per_pixel = simulation.flat_field_samples_per_pixel,
+                            .stated = "flat field"});
+    }
+    return pictures;
+}
+
+findings::StepInput input_of(const Simulation& simulation, const findings::RunSettings& settings, Json what) {
+    return {.settings = {{"scene", simulation.stated_scene}, {"what", std::move(what)}, {"seed", settings.seed}},
+            .files = formats::files_of_lens(simulation.scene.camera.lens)};
+}
+
+/// `index`: of all pictures; views do not share their noise.
+findings::StepInput view_input(const Simulation& simulation, const findings::RunSettings& settings,
+                               const SimulatedPicture& picture, std::size_t index) {
+    return input_of(simulation, settings, Json::list({picture.stated, picture.samples_per_pixel, index}));
+}
+
+/// Of all that is measured in the pictures.
+findings::StepInput measured_input(const Simulation& simulation, const findings::RunSettings& settings) {
+    return input_of(simulation, settings,
+                    {{"name", simulation.name},
+                     {"model", stated_model(simulation.model)},
+                     {"views", simulation.stated_views},
+                     {"flat_field", simulation.flat_field ? simulation.flat_field_samples_per_pixel : 0},
+                     {"samples_per_pixel", simulation.scene.samples_per_pixel}});
+}
+
+render::Camera camera_of(const Simulation& simulation, const findings::RunSettings& settings) {
+    return {simulation.scene.camera, simulation.scene.spectral, render::PixelFilter{}, settings.cache};
+}
+
+formats::Image rendered(const Simulation& simulation, const render::Camera& camera, const SimulatedPicture& picture,
+                        std::size_t index, const findings::RunSettings& settings,
+                        const findings::RunProgress& progress) {
+    return settings.steps.step(kViewStep, view_input(simulation, settings, picture, index), [&] {
+        const render::World world =
+            render::even_chart(picture.chart, picture.placement, simulation.scene.chart->luminance_cd_m2, camera);
+        const render::View view{.world = &world, .camera = &camera, .seed = settings.seed + index};
+        const std::string words = fmt::format("{}, {}", simulation.name, picture.words);
+        const render::Film film =
+            render::render_film(render::integrator_named("chart").render(view),
+                                {.first = 0, .end = static_cast<std::uint32_t>(picture.samples_per_pixel)},
+                                settings.threads, [&](double done) { progress(words, done); });
+        return colours_only(render::film_image(film));
+    });
+}
+
+std::vector<findings::PlannedStep> steps_of(const Simulation& simulation, const findings::RunSettings& settings) {
+    std::vector<findings::PlannedStep> steps;
+    const render::Sensor& sensor = simulation.scene.camera.sensor;
+    const double pixels = static_cast<double>(sensor.width) * sensor.height;
+    const std::vector<SimulatedPicture> pictures = pictures_of(simulation);
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        constexpr double kSecondsOfSample = 5e-7;
+        const auto carry_out = [&simulation, picture = pictures[i], i](const findings::RunSettings& run,
+                                                                       const findings::RunProgress& progress) {
+            static_cast<void>(rendered(simulation, camera_of(simulation, run), picture, i, run, progress));
+        };
+        steps.push_back({kViewStep, fmt::format("{}, {}", simulation.name, pictures[i].words),
+                         view_input(simulation, settings, pictures[i], i),
+                         kSecondsOfSample * pixels * pictures[i].samples_per_pixel, carry_out});
+    }
+    std::ranges::move(steps_of_measurement(simulation.name, measured_input(simulation, settings), settings),
+                      std::back_inserter(steps));
+    steps.push_back({kTracedStep, simulation.name + ", tracing", input_of(simulation, settings, kTracedStep)});
+    return steps;
+}
+
+}  // namespace
+
 MeasuredCamera measure_simulation(const Simulation& simulation, const render::Camera& camera,
                                   const findings::RunSettings& settings, const findings::RunProgress& progress) {
     MeasuredCamera measured{.subject = {.id = simulation.name, .kind = "simulation", .label = camera.lens()->name},
                             .profile = {},
                             .traced = {}};
-    const std::vector<std::filesystem::path> files = formats::files_of_lens(simulation.scene.camera.lens);
-    const auto input_of = [&](Json what) {
-        return findings::StepInput{
-            .settings = {{"scene", simulation.stated_scene}, {"what", std::move(what)}, {"seed", settings.seed}},
-            .files = files};
-    };
     std::vector<calibration::Picture> pictures;
-    const auto add_picture = [&](const std::string& file, const std::string& caption, calibration::PictureRole role,
-                                 const scene::Chart& chart, const scene::Placement& placement, int samples_per_pixel,
-                                 const std::string& step, Json stated) {
-        const auto rendered = [&] {
-            const render::World world =
-                render::even_chart(chart, placement, simulation.scene.chart->luminance_cd_m2, camera);
-            const render::View view{.world = &world,
-                                    .camera = &camera,
-                                    .seed = settings.seed + pictures.size()};  // views do not share their noise
-            const render::Film film =
-                render::render_film(render::integrator_named("chart").render(view),
-                                    {.first = 0, .end = static_cast<std::uint32_t>(samples_per_pixel)},
-                                    settings.threads, [&](double done) { progress(simulation.name + step, done); });
-            return colours_only(render::film_image(film));
-        };
-        formats::Image image = settings.steps.step(
-            "view", input_of(Json::list({std::move(stated), samples_per_pixel, pictures.size()})), rendered);
-        const std::string name = fmt::format("{}/{}.png", simulation.name, file);
-        measured.subject.pictures.push_back(findings::shown_picture(name, caption, image));
-        pictures.push_back({.name = name, .role = role, .load = [image = std::move(image)] { return image; }});
-    };
-    const std::size_t count = simulation.views.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        add_picture(fmt::format("view-{}", i + 1), describe(simulation.views[i]), calibration::PictureRole::chart,
-                    simulation.scene.chart->chart, simulation.views[i], simulation.scene.samples_per_pixel,
-                    fmt::format(", view {} of {}", i + 1, count), simulation.stated_views[i]);
-    }
-    if (simulation.flat_field) {
-        add_picture("flat-field", "flat field", calibration::PictureRole::flat_field, {.pattern = scene::FlatField{}},
-                    {.distance_mm = 1000.0}, simulation.flat_field_samples_per_pixel, ", flat field", "flat field");
+    for (const SimulatedPicture& picture : pictures_of(simulation)) {
+        formats::Image image = rendered(simulation, camera, picture, pictures.size(), settings, progress);
+        const std::string name = fmt::format("{}/{}.png", simulation.name, picture.file);
+        measured.subject.pictures.push_back(findings::shown_picture(name, picture.caption, image));
+        pictures.push_back({.name = name, .role = picture.role, .load = [image = std::move(image)] { return image; }});
     }
     progress(simulation.name + ", measuring", 0.0);
     const calibration::MeasureInput input{
@@ -208,47 +285,46 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
         .source = {.kind = "render", .images = {}, .camera = "simulated", .lens = measured.subject.label},
         .pixel_pitch_um = 1e3 * camera.sensor().pixel_pitch_mm,
         .threads = settings.threads};
-    const findings::StepInput all =
-        input_of({{"name", simulation.name},
-                  {"model", stated_model(simulation.model)},
-                  {"views", simulation.stated_views},
-                  {"flat_field", simulation.flat_field ? simulation.flat_field_samples_per_pixel : 0},
-                  {"samples_per_pixel", simulation.scene.samples_per_pixel}});
-    measured.profile = measured_in_steps(settings, all, input, calibration::measure);
+    measured.profile = measured_in_steps(settings, measured_input(simulation, settings), input, calibration::measure);
     measured.far_points = far_points(measured.profile, input.pictures);
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < simulation.views.size(); ++i) {
         add_view(measured.subject.pictures[i], measured.profile.views.at(i));
     }
     progress(simulation.name + ", tracing", 0.0);
-    measured.traced = settings.steps.step("traced", input_of("traced"), [&] { return lens_profile(camera); });
+    measured.traced = settings.steps.step(kTracedStep, input_of(simulation, settings, kTracedStep),
+                                          [&] { return lens_profile(camera); });
+    add_references(simulation.references, measured, simulation.scene.camera.f_number);
     add_facts(measured, simulation, camera);
     return measured;
 }
 
 static findings::Findings simulation_findings(const Simulation& simulation, const findings::RunSettings& settings,
                                               const findings::RunProgress& progress) {
-    const render::Camera camera(simulation.scene.camera, simulation.scene.spectral, render::PixelFilter{},
-                                settings.cache);
-    MeasuredCamera measured = measure_simulation(simulation, camera, settings, progress);
+    MeasuredCamera measured = measure_simulation(simulation, camera_of(simulation, settings), settings, progress);
     std::vector<findings::Check> checks = closed_loop_checks(measured.subject.id, measured.subject.label,
                                                              measured.profile, *measured.traced, simulation.limits);
     findings::Findings found = camera_findings(std::move(measured), simulation.limits);
     findings::append(found, {.checks = std::move(checks)});
+    found.not_shown = {
+        "A render is of the lens as its prescription states it: no tolerances of manufacture, no dust, no filters of "
+        "the "
+        "sensor.",
+        "Views of a simulation are lit evenly; a chart's own shadows and gloss are not in them."};
     found.inputs = formats::shipped_glass_files();
     std::ranges::move(formats::shipped_transmittance_files(), std::back_inserter(found.inputs));
     found.inputs.push_back(formats::find_lens_file(simulation.scene.camera.lens));
+    std::ranges::move(files_of(simulation.references), std::back_inserter(found.inputs));
     return found;
 }
 
 std::vector<findings::Study> read_simulations(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (Simulation& simulation : simulations_of(file)) {
-        std::string name = simulation.name;
-        studies.push_back({std::move(name), [simulation = std::move(simulation)](const findings::RunSettings& settings,
-                                                                                 const findings::RunProgress& progress,
-                                                                                 const findings::Findings&) {
-                               return simulation_findings(simulation, settings, progress);
-                           }});
+    for (const Simulation& simulation : simulations_of(file)) {
+        studies.push_back(
+            {simulation.name,
+             [simulation](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                          const findings::Findings&) { return simulation_findings(simulation, settings, progress); },
+             [simulation](const findings::RunSettings& settings) { return steps_of(simulation, settings); }});
     }
     return studies;
 }

@@ -10,6 +10,7 @@
 #include "engine/render/scene_setup.h"
 #include "experiments/findings/study.h"
 #include "experiments/studies/cameras/measured_camera.h"
+#include "experiments/studies/cameras/reference_curves.h"
 
 namespace lensproof::studies {
 
@@ -22,6 +23,7 @@ struct Simulation {
     int flat_field_samples_per_pixel = 128;  // an even field shows the noise that edges hide
     std::optional<calibration::ModelKind> model;
     ClosedLoopLimits limits;
+    std::vector<ReferenceSource> references;
     // What the file states of it, for steps to be known by.
     Json stated_scene{};  // camera, chart, light, sampling
     Json stated_views = Json::list();

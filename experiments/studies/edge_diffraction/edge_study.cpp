@@ -251,7 +251,9 @@ std::vector<findings::Check> edge_checks(const MeasuredEdges& measured) {
 }
 
 findings::Findings edge_findings(const MeasuredEdges& measured) {
-    findings::Findings found{.checks = edge_checks(measured), .subjects_title = "Stops"};
+    findings::Findings found{.checks = edge_checks(measured),
+                             .subjects_title = "Stops",
+                             .not_shown = {"The stop is taken to be a thin black screen."}};
     Json table = Json::list();
     for (const auto& [setting, edges] : measured) {
         found.subjects.push_back(subject_of(setting, edges));
@@ -264,7 +266,7 @@ findings::Findings edge_findings(const MeasuredEdges& measured) {
 
 std::vector<findings::Study> read_edge_diffraction(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("edge_diffraction")) {
+    for (TomlTable& table : file.tables("edge_diffraction")) {
         for (const EdgeSetting& setting : read_settings(table, file)) {
             const auto measured = [setting](const findings::RunSettings& run, const findings::RunProgress& progress) {
                 progress(label_of(setting), 0.0);

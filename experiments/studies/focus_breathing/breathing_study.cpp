@@ -94,7 +94,7 @@ findings::Findings carry_out(const Breathing& asked, const findings::RunSettings
 
 std::vector<findings::Study> read_focus_breathing(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("focus_breathing")) {
+    for (TomlTable& table : file.tables("focus_breathing")) {
         Breathing asked{.name = findings::read_name(table), .lens = formats::read_lens_name(table)};
         file.add_subject(table, "name", asked.name);
         asked.zoom = table.has("zoom") ? table.texts("zoom") : std::vector<std::string>{""};

@@ -153,10 +153,7 @@ findings::Subject population_subject(const std::vector<PairResult>& results, con
                       {"within the limit",
                        fmt::format("{:.0f} % of the right prescriptions, {:.0f} % of the others",
                                    100.0 * summary.right_within_limit, 100.0 * summary.wrong_within_limit)},
-                      {"beyond the limit", worst_pairs(results)},
-                      {"what this does not show",
-                       "A patent's example is not always the lens that was sold, and an entry is a volunteer's fit of "
-                       "one copy. Agreement of distortion says little of the lens's sharpness."}},
+                      {"beyond the limit", worst_pairs(results)}},
             .pictures = {{.name = "population.svg",
                           .caption = "How far prescriptions are from photographed lenses",
                           .width = kPhotographedChartWidth,
@@ -239,6 +236,9 @@ PhotographedSettings read_photographed_table(TomlTable& table) {
 findings::Findings photographed_findings(const std::vector<PairResult>& results) {
     const PopulationSummary summary = summarize(results);
     findings::Findings found{.checks = population_checks(summary), .subjects_title = "Photographed lenses"};
+    found.not_shown = {
+        "A patent's example is not always the lens that was sold, and an entry is a volunteer's fit of one copy.",
+        "Agreement of distortion says little of the lens's sharpness."};
     found.subjects.push_back(population_subject(results, summary));
     std::ranges::transform(results, std::back_inserter(found.subjects), pair_subject);
     Json pairs = Json::list();
@@ -256,7 +256,7 @@ findings::Findings photographed_findings(const std::vector<PairResult>& results)
 std::vector<findings::Study> read_photographed_lenses(findings::ExperimentFile& file) {
     PhotographedSettings wanted;
     std::set<std::pair<std::string, double>> entries;
-    for (TomlTable& table : file.top.tables("photographed_lenses")) {
+    for (TomlTable& table : file.tables("photographed_lenses")) {
         PhotographedSettings read = read_photographed_table(table);
         std::erase_if(read.pairs, [&](const LensPair& pair) { return entries.contains(entry_of(pair)); });
         for (const LensPair& pair : read.pairs) {

@@ -191,7 +191,7 @@ findings::Findings passage_findings(const std::vector<Passage>& passages) {
 
 std::vector<findings::Study> read_pupil_passage(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("pupil_passage")) {
+    for (TomlTable& table : file.tables("pupil_passage")) {
         const PassageSetting setting = read_passage_setting(table);
         file.add_subject(table, "lens", id_of(setting));
         const auto counted = [setting](const findings::RunSettings& settings, const findings::RunProgress& progress) {

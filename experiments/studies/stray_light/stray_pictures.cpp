@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 #include "experiments/draw/chart.h"
 #include "experiments/draw/palette.h"
 #include "experiments/findings/shown_picture.h"
+#include "experiments/studies/stray_light/light_chart.h"
 
 namespace lensproof::studies {
 
@@ -52,11 +55,12 @@ std::string caption_of(const std::string& pass, double ev) {
     return ev == 0.0 ? pass : fmt::format("{}, {:+g} EV", pass, ev);
 }
 
-/// Pictures of one size in rows of `columns`, with a white line between them.
+/// Pictures in rows of `columns`, with a white line between them; those that are smaller than others have white beside
+/// them.
 formats::Image contact_sheet(const std::vector<formats::Image>& pictures, int columns) {
     constexpr int kLine = 4;  // px
-    const int width = pictures.front().width;
-    const int height = pictures.front().height;
+    const int width = std::ranges::max_element(pictures, {}, &formats::Image::width)->width;
+    const int height = std::ranges::max_element(pictures, {}, &formats::Image::height)->height;
     const int count = static_cast<int>(pictures.size());
     const int across = std::min(columns, count);
     const int rows = (count + across - 1) / across;
@@ -67,8 +71,8 @@ formats::Image contact_sheet(const std::vector<formats::Image>& pictures, int co
         const formats::Image& picture = pictures[static_cast<std::size_t>(i)];
         const int left = (i % across) * (width + kLine);
         const int top = (i / across) * (height + kLine);
-        const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(width) * picture.channel_count();
-        for (int y = 0; y < height; ++y) {
+        const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(picture.width) * picture.channel_count();
+        for (int y = 0; y < picture.height; ++y) {
             std::copy_n(picture.pixels.begin() + y * row, row, &sheet.at(left, top + y, 0));
         }
     }
@@ -131,12 +135,8 @@ findings::Picture ghost_chart(const StrayScene& scene, const std::vector<Variant
         }
         chart.curves.push_back(std::move(curve));
     }
-    constexpr draw::ChartSize kSize{.width = 860.0, .height = 480.0};
-    return {.name = scene.name + "/ghosts.svg",
-            .caption = "Each ghost by itself",
-            .width = kSize.width,
-            .height = kSize.height,
-            .bytes = draw::chart_svg(chart, kSize)};
+    return findings::drawn_picture(scene.name + "/ghosts.svg", "Each ghost by itself",
+                                   draw::chart_svg(chart, {.width = 860.0, .height = 480.0}));
 }
 
 /// The error of the sum of passes and of each over the time that they took.
@@ -162,12 +162,8 @@ findings::Picture growth_chart(const StrayScene& scene, const StrayVariant& vari
         }
         chart.curves.push_back(std::move(curve));
     }
-    constexpr draw::ChartSize kSize{.width = 760.0, .height = 520.0};
-    return {.name = fmt::format("{}-{}/growth.svg", scene.name, variant.name),
-            .caption = "Error over time",
-            .width = kSize.width,
-            .height = kSize.height,
-            .bytes = draw::chart_svg(chart, kSize)};
+    return findings::drawn_picture(fmt::format("{}-{}/growth.svg", scene.name, variant.name), "Error over time",
+                                   draw::chart_svg(chart, {.width = 760.0, .height = 520.0}));
 }
 
 }  // namespace
@@ -179,6 +175,9 @@ std::vector<findings::Picture> pictures_of_all(const StrayScene& scene, const st
     }
     if (scene.ghosts_deg && !variants.front().ghosts.empty()) {
         pictures.push_back(ghost_chart(scene, variants));
+    }
+    if (std::optional<findings::Picture> light = light_chart(scene, variants)) {
+        pictures.push_back(*std::move(light));
     }
     if (scene.chart) {
         std::ranges::move(chart_drawings(*scene.chart, scene.name, features_of(scene, variants)),

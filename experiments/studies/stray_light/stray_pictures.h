@@ -8,7 +8,7 @@
 namespace lensproof::studies {
 
 /// All variants together: a contact sheet of each pass and of the picture, where there are several; the ghosts one by
-/// one, features of a chart, and how the picture grew, where they are asked for.
+/// one and features of a chart, where they are asked for; light over what is varied.
 std::vector<findings::Picture> pictures_of_all(const StrayScene& scene, const std::vector<VariantFindings>& variants);
 
 /// The picture, and each pass by itself where there are several.

@@ -29,10 +29,14 @@ std::vector<std::string> pass_names() {
     return names;
 }
 
-StrayVariant read_variant(TomlTable& table, const TomlTable& scene, const StrayScene& owner,
+StrayVariant read_variant(findings::Varied& varied, const TomlTable& scene, const StrayScene& owner,
                           findings::ExperimentFile& file) {
-    StrayVariant variant{.name = findings::read_name(table), .label = {}, .setup = {}, .stated = {}};
-    variant.label = table.text_or("label", variant.name);
+    TomlTable& table = varied.table;
+    StrayVariant variant{
+        .name = findings::read_name(table), .label = {}, .setup = {}, .stated = {}, .at = std::move(varied.at)};
+    const std::string words = findings::words_of(variant.at);
+    const std::string label = table.text_or("label", words.empty() ? variant.name : "");
+    variant.label = fmt::format("{}{}{}", label, label.empty() || words.empty() ? "" : ", ", words);
     const std::optional<TomlTable> changed = table.optional_table("scene");
     const TomlTable whole = changed ? scene.overlaid(*changed) : scene;
     variant.setup = render::read_scene_setup(whole);
@@ -141,11 +145,11 @@ StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
                 [](TomlTable& numbers, const std::string& pass) { return numbers.integer(pass, 1, 1 << 20); });
     scene.brightening_ev = by_pass(table, "brightening_ev", scene.passes,
                                    [](TomlTable& numbers, const std::string& pass) { return numbers.number(pass); });
-    std::vector<TomlTable> variants = table.tables("variants");
+    std::vector<findings::Varied> variants = findings::varied_tables(table, "variants");
     if (variants.empty() || variants.size() > kMostVariants) {
         table.fail("variants", fmt::format("has {} tables, expected 1 to {}", variants.size(), kMostVariants));
     }
-    for (TomlTable& variant : variants) {
+    for (findings::Varied& variant : variants) {
         scene.variants.push_back(read_variant(variant, world, scene, file));
     }
     scene.columns = table.integer_or("columns", static_cast<int>(std::min<std::size_t>(3, variants.size())), 1, 20);

@@ -9,6 +9,7 @@
 
 #include "engine/render/scene_setup.h"
 #include "experiments/findings/study.h"
+#include "experiments/findings/varied.h"
 #include "experiments/studies/stray_light/measured_chart.h"
 
 namespace lensproof::studies {
@@ -18,7 +19,8 @@ struct StrayVariant {
     std::string name;
     std::string label;
     render::SceneSetup setup;
-    std::string stated;  // the whole scene, as both files state it
+    std::string stated;              // the whole scene, as both files state it
+    std::vector<findings::Axis> at;  // what `vary` sets, each with one value
 };
 
 /// Those that the variant's scene names, the lens's too.

@@ -44,6 +44,9 @@ findings::Subject subject_of(const StrayScene& scene, const StrayVariant& varian
 
 Json variant_json(const StrayVariant& variant, const VariantFindings& found) {
     Json json{{"name", variant.name}};
+    for (const findings::Axis& axis : variant.at) {
+        json["at"][axis.key] = axis.json(0);
+    }
     for (const PassPicture& pass : found.passes) {
         json["light"][pass.pass] = {{"mean", pass.light.value}, {"standard_error", pass.light.standard_error}};
     }
@@ -82,7 +85,11 @@ Json variant_json(const StrayVariant& variant, const VariantFindings& found) {
 
 findings::Findings stray_findings(const StrayScene& scene, const std::vector<VariantFindings>& variants,
                                   findings::Quality quality) {
-    findings::Findings found{.checks = stray_checks(scene, variants, quality), .subjects_title = "Scenes"};
+    findings::Findings found{.checks = stray_checks(scene, variants, quality),
+                             .subjects_title = "Scenes",
+                             .not_shown = {"Passes are of unpolarised light, and of rays: what interferes between them "
+                                           "is left out.",
+                                           "Makers do not publish their coatings: every preset is assumed."}};
     Json table{{"name", scene.name}, {"passes", scene.passes}};
     findings::Subject all{.id = scene.name, .kind = "scene", .label = scene.title};
     all.pictures = pictures_of_all(scene, variants);
@@ -103,7 +110,7 @@ findings::Findings stray_findings(const StrayScene& scene, const std::vector<Var
 
 std::vector<findings::Study> read_stray_light(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("stray_light")) {
+    for (TomlTable& table : file.tables("stray_light")) {
         const StrayScene scene = read_stray_scene(table, file);
         const auto carry_out = [scene](const findings::RunSettings& settings, const findings::RunProgress& progress,
                                        const findings::Findings&) {

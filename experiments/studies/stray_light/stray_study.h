@@ -17,7 +17,8 @@ std::vector<findings::Check> stray_checks(const StrayScene& scene, const std::ve
 
 /// A subject for all variants, with a contact sheet of each pass, and one for each of them; with an entry of the table
 /// "stray_light":
-///     {"name", "passes": [...], "variants": [{"name", "light": {PASS: {"mean", "standard_error"}, …}, "noise_percent",
+///     {"name", "passes": [...], "variants": [{"name", "at": {KEY: value}, "light": {PASS: {"mean", "standard_error"},
+///     …}, "noise_percent",
 ///      "ghosts": [{"surfaces": [2, 1], "energy", "energy_standard_error"}], "veiling_glare_percent",
 ///      "veiling_glare_standard_error_percent", "energy": {FATE_percent, FATE_standard_error_percent, …},
 ///      "features": [{"field_deg", "picture": {LOOK: value, …}, "rays": {…}}], "streaks": {"offset_deg", "slope",

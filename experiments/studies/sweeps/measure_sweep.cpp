@@ -120,11 +120,11 @@ const std::vector<std::string>& mtf_models() {
     return models;
 }
 
-SweepSetting sweep_setting(const std::vector<SweepAxis>& axes, std::size_t i) {
-    const std::vector<std::size_t> place = place_of(axes, i);
+SweepSetting sweep_setting(const std::vector<findings::Axis>& axes, std::size_t i) {
+    const std::vector<std::size_t> place = findings::place_of(axes, i);
     SweepSetting setting;
     for (std::size_t a = 0; a < axes.size(); ++a) {
-        const SweepAxis& axis = axes[a];
+        const findings::Axis& axis = axes[a];
         if (axis.is_text()) {
             (axis.key == "lens"   ? setting.lens
              : axis.key == "zoom" ? setting.zoom

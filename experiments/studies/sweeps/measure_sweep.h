@@ -7,7 +7,7 @@
 
 #include "engine/base/json_archive.h"
 #include "engine/optics/lens.h"
-#include "experiments/studies/sweeps/sweep_axes.h"
+#include "experiments/findings/axis.h"
 
 namespace lensproof::studies {
 
@@ -44,7 +44,7 @@ struct SweepSetting {
     std::optional<double> wavelength_nm;
 };
 
-SweepSetting sweep_setting(const std::vector<SweepAxis>& axes, std::size_t i);
+SweepSetting sweep_setting(const std::vector<findings::Axis>& axes, std::size_t i);
 
 /// What was found there. What does not exist, such as a spot beyond the field, is nothing.
 struct SweepValue {

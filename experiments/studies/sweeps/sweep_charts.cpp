@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 
 #include "experiments/draw/chart.h"
 #include "experiments/draw/palette.h"
+#include "experiments/findings/shown_picture.h"
 
 namespace lensproof::studies {
 
@@ -19,7 +19,7 @@ namespace {
 std::vector<std::size_t> panel_axes(const Sweep& sweep) {
     std::vector<std::size_t> axes;
     for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
-        const SweepAxis& axis = sweep.axes[a];
+        const findings::Axis& axis = sweep.axes[a];
         if (axis.is_swept() && axis.key != sweep.over && axis.key != sweep.curves) {
             axes.push_back(a);
         }
@@ -31,8 +31,8 @@ std::vector<std::size_t> panel_axes(const Sweep& sweep) {
 std::vector<std::size_t> combinations_at(const Sweep& sweep, const std::vector<std::size_t>& axes,
                                          const std::vector<std::size_t>& places) {
     std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < combinations(sweep.axes); ++i) {
-        const std::vector<std::size_t> place = place_of(sweep.axes, i);
+    for (std::size_t i = 0; i < findings::combinations(sweep.axes); ++i) {
+        const std::vector<std::size_t> place = findings::place_of(sweep.axes, i);
         bool is_there = true;
         for (std::size_t k = 0; k < axes.size(); ++k) {
             is_there = is_there && place[axes[k]] == places[k];
@@ -45,10 +45,10 @@ std::vector<std::size_t> combinations_at(const Sweep& sweep, const std::vector<s
 }
 
 std::size_t index_of(const Sweep& sweep, const std::string& key) {
-    return static_cast<std::size_t>(std::ranges::find(sweep.axes, key, &SweepAxis::key) - sweep.axes.begin());
+    return static_cast<std::size_t>(std::ranges::find(sweep.axes, key, &findings::Axis::key) - sweep.axes.begin());
 }
 
-std::string colour_of(const SweepAxis* curves, std::size_t i) {
+std::string colour_of(const findings::Axis* curves, std::size_t i) {
     return curves != nullptr && curves->key == "wavelength_nm" ? draw::wavelength_colour(curves->numbers[i])
                                                                : draw::series_colour(i);
 }
@@ -57,7 +57,7 @@ std::string colour_of(const SweepAxis* curves, std::size_t i) {
 /// dashed.
 std::vector<draw::ChartCurve> curves_of(const Sweep& sweep, const std::vector<SweepValue>& values,
                                         const std::vector<std::string>& family, const std::vector<std::size_t>& in) {
-    const SweepAxis* curves = axis_named(sweep.axes, sweep.curves);
+    const findings::Axis* curves = findings::axis_named(sweep.axes, sweep.curves);
     const std::size_t over = index_of(sweep, sweep.over);
     const std::size_t by = index_of(sweep, sweep.curves);
     std::vector<draw::ChartCurve> drawn;
@@ -73,7 +73,7 @@ std::vector<draw::ChartCurve> curves_of(const Sweep& sweep, const std::vector<Sw
                 .marker = draw::CurveMarker::dot,
                 .marker_size = 3.5};
             for (const std::size_t i : in) {
-                const std::vector<std::size_t> place = place_of(sweep.axes, i);
+                const std::vector<std::size_t> place = findings::place_of(sweep.axes, i);
                 if (curves == nullptr || place[by] == c) {
                     curve.points.push_back(
                         {sweep.axes[over].numbers[place[over]],
@@ -88,7 +88,7 @@ std::vector<draw::ChartCurve> curves_of(const Sweep& sweep, const std::vector<Sw
 }
 
 /// Equal ratios are shown as equal steps where the values look so.
-draw::AxisScale scale_of(const SweepAxis& axis) {
+draw::AxisScale scale_of(const findings::Axis& axis) {
     std::vector<double> finite = axis.numbers;
     std::erase_if(finite, [](double number) { return !std::isfinite(number); });
     const auto [least, most] = std::ranges::minmax_element(finite);
@@ -108,23 +108,18 @@ std::string places_text(const Sweep& sweep, const std::vector<std::size_t>& axes
 
 std::string fixed_text(const Sweep& sweep) {
     std::string text;
-    for (const SweepAxis& axis : sweep.axes) {
+    for (const findings::Axis& axis : sweep.axes) {
         text += axis.is_swept() ? "" : (text.empty() ? "" : ", ") + axis.label(0);
     }
     return text;
 }
 
-double attribute_of(const std::string& svg, const std::string& name) {
-    const std::size_t at = svg.find(name + "=\"");
-    return at == std::string::npos ? 0.0 : std::strtod(svg.c_str() + at + name.size() + 2, nullptr);
-}
-
 findings::Picture family_chart(const Sweep& sweep, const std::vector<SweepValue>& values,
                                const std::vector<std::string>& family) {
     const SweepQuantity& first = sweep_quantity(family.front());
-    const SweepAxis& over = *axis_named(sweep.axes, sweep.over);
+    const findings::Axis& over = *findings::axis_named(sweep.axes, sweep.over);
     const std::vector<std::size_t> axes = panel_axes(sweep);
-    std::vector<SweepAxis> panels;
+    std::vector<findings::Axis> panels;
     std::ranges::transform(axes, std::back_inserter(panels), [&](std::size_t axis) { return sweep.axes[axis]; });
     constexpr std::size_t kMostColumns = 4;
     draw::ChartGrid grid{.title = sweep.title,
@@ -135,21 +130,15 @@ findings::Picture family_chart(const Sweep& sweep, const std::vector<SweepValue>
     if (grid.columns == 1) {
         grid.frame = {.width = 520.0, .height = 300.0};  // titles have room
     }
-    for (std::size_t i = 0; i < combinations(panels); ++i) {
-        const std::vector<std::size_t> places = place_of(panels, i);
+    for (std::size_t i = 0; i < findings::combinations(panels); ++i) {
+        const std::vector<std::size_t> places = findings::place_of(panels, i);
         grid.panels.push_back({.title = places_text(sweep, axes, places),
                                .x = {.label = over.title(), .unit = over.unit(), .scale = scale_of(over)},
                                .y = {.label = first.family, .unit = first.unit, .holds_zero = first.is_mtf},
                                .curves = curves_of(sweep, values, family, combinations_at(sweep, axes, places))});
     }
-    std::string svg = draw::chart_grid_svg(grid);
-    const double width = attribute_of(svg, "width");
-    const double height = attribute_of(svg, "height");
-    return {.name = fmt::format("{}/{}.svg", sweep.name, family.front()),
-            .caption = fmt::format("{} over {}", first.family, over.title()),
-            .width = width,
-            .height = height,
-            .bytes = std::move(svg)};
+    return findings::drawn_picture(fmt::format("{}/{}.svg", sweep.name, family.front()),
+                                   fmt::format("{} over {}", first.family, over.title()), draw::chart_grid_svg(grid));
 }
 
 }  // namespace

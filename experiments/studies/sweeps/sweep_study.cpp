@@ -14,6 +14,7 @@
 
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/studies/sweeps/sweep_charts.h"
 
@@ -24,25 +25,39 @@ namespace {
 constexpr const char* kSweepStep = "sweep-value";
 constexpr std::size_t kMostValues = 20'000;
 
+/// The axes that a table states, those that change a lens first and those that it is looked at by last. All but lens
+/// are optional.
+std::vector<findings::Axis> read_axes(TomlTable& table) {
+    std::vector<findings::Axis> axes = {findings::text_axis(table, "lens", formats::read_lens_names(table))};
+    for (const char* key : {"zoom", "f_number", "focus_distance_mm", "image_shift_mm", "model", "frequency_per_mm",
+                            "field_deg", "wavelength_nm"}) {
+        if (table.has(key)) {
+            const bool is_text = key == std::string("zoom") || key == std::string("model");
+            axes.push_back(is_text ? findings::read_text_axis(table, key) : findings::read_number_axis(table, key));
+        }
+    }
+    return axes;
+}
+
 /// All axes that have more than one number, the one with the most first.
-std::vector<std::string> numbers_swept(const std::vector<SweepAxis>& axes) {
-    std::vector<const SweepAxis*> swept;
-    for (const SweepAxis& axis : axes) {
+std::vector<std::string> numbers_swept(const std::vector<findings::Axis>& axes) {
+    std::vector<const findings::Axis*> swept;
+    for (const findings::Axis& axis : axes) {
         if (axis.is_swept() && !axis.is_text()) {
             swept.push_back(&axis);
         }
     }
-    std::ranges::stable_sort(swept, std::greater{}, &SweepAxis::size);
+    std::ranges::stable_sort(swept, std::greater{}, &findings::Axis::size);
     std::vector<std::string> keys;
-    std::ranges::transform(swept, std::back_inserter(keys), &SweepAxis::key);
+    std::ranges::transform(swept, std::back_inserter(keys), &findings::Axis::key);
     return keys;
 }
 
 /// What curves stand for where the file does not say: colours, else the shortest of what is left, of eight at most.
 std::string usual_curves(const Sweep& sweep) {
     constexpr std::size_t kMostCurves = 8;
-    const SweepAxis* best = nullptr;
-    for (const SweepAxis& axis : sweep.axes) {
+    const findings::Axis* best = nullptr;
+    for (const findings::Axis& axis : sweep.axes) {
         if (!axis.is_swept() || axis.key == sweep.over || axis.size() > kMostCurves) {
             continue;
         }
@@ -61,7 +76,7 @@ void read_layout(TomlTable& table, Sweep& sweep) {
     }
     sweep.over = table.has("over") ? table.choice("over", numbers) : numbers.front();
     std::vector<std::string> others;
-    for (const SweepAxis& axis : sweep.axes) {
+    for (const findings::Axis& axis : sweep.axes) {
         if (axis.is_swept() && axis.key != sweep.over) {
             others.push_back(axis.key);
         }
@@ -70,7 +85,7 @@ void read_layout(TomlTable& table, Sweep& sweep) {
 }
 
 /// The places of the values that a check's `where` names in an axis.
-std::vector<std::size_t> places_named(TomlTable& where, const SweepAxis& axis) {
+std::vector<std::size_t> places_named(TomlTable& where, const findings::Axis& axis) {
     std::vector<std::size_t> places;
     const auto find = [&](const auto& values, const auto& wanted) {
         for (const auto& one : wanted) {
@@ -95,7 +110,7 @@ SweepCheck read_check(TomlTable& table, const Sweep& sweep) {
     SweepCheck check{.quantity = table.choice("measure", sweep.quantities), .bound = {}, .where = {}, .where_text = {}};
     check.bound = findings::read_bound(table);
     if (std::optional<TomlTable> where = table.optional_table("where")) {
-        for (const SweepAxis& axis : sweep.axes) {
+        for (const findings::Axis& axis : sweep.axes) {
             if (where->has(axis.key)) {
                 check.where[axis.key] = places_named(*where, axis);
                 std::vector<std::string> labels;
@@ -112,7 +127,7 @@ SweepCheck read_check(TomlTable& table, const Sweep& sweep) {
 }
 
 bool is_where(const Sweep& sweep, const SweepCheck& check, std::size_t i) {
-    const std::vector<std::size_t> place = place_of(sweep.axes, i);
+    const std::vector<std::size_t> place = findings::place_of(sweep.axes, i);
     for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
         const auto wanted = check.where.find(sweep.axes[a].key);
         if (wanted != check.where.end() && std::ranges::count(wanted->second, place[a]) == 0) {
@@ -138,7 +153,7 @@ double badness(const findings::Bound& bound, const std::optional<double>& value)
 }
 
 std::string combination_text(const Sweep& sweep, std::size_t i) {
-    const std::vector<std::size_t> place = place_of(sweep.axes, i);
+    const std::vector<std::size_t> place = findings::place_of(sweep.axes, i);
     std::vector<std::string> labels;
     for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
         labels.push_back(sweep.axes[a].label(place[a]));
@@ -151,7 +166,7 @@ std::string quantity_text(const SweepQuantity& quantity) {
 }
 
 findings::StepInput input_of(const Sweep& sweep, std::size_t i) {
-    const std::vector<std::size_t> place = place_of(sweep.axes, i);
+    const std::vector<std::size_t> place = findings::place_of(sweep.axes, i);
     Json at = Json::object();
     for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
         at[sweep.axes[a].key] = sweep.axes[a].json(place[a]);
@@ -191,7 +206,7 @@ class IdleLenses {
 std::vector<findings::PlannedStep> steps_of(const Sweep& sweep) {
     std::vector<findings::PlannedStep> steps;
     const auto lenses = std::make_shared<IdleLenses>();
-    for (std::size_t i = 0; i < combinations(sweep.axes); ++i) {
+    for (std::size_t i = 0; i < findings::combinations(sweep.axes); ++i) {
         constexpr double kUsualSeconds = 0.05;
         const auto carry_out = [&sweep, lenses, i](const findings::RunSettings& settings,
                                                    const findings::RunProgress&) {
@@ -229,7 +244,7 @@ std::string range_text(const Sweep& sweep, const std::vector<SweepValue>& values
 
 Json sweep_json(const Sweep& sweep, const std::vector<SweepValue>& values) {
     Json json{{"name", sweep.name}, {"over", sweep.over}, {"curves", sweep.curves}, {"quantities", sweep.quantities}};
-    for (const SweepAxis& axis : sweep.axes) {
+    for (const findings::Axis& axis : sweep.axes) {
         Json list = Json::list();
         for (std::size_t i = 0; i < axis.size(); ++i) {
             list.push_back(axis.json(i));
@@ -237,7 +252,7 @@ Json sweep_json(const Sweep& sweep, const std::vector<SweepValue>& values) {
         json["axes"].push_back({{"axis", axis.key}, {"values", std::move(list)}});
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::vector<std::size_t> place = place_of(sweep.axes, i);
+        const std::vector<std::size_t> place = findings::place_of(sweep.axes, i);
         Json row = Json::object();
         for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
             row[sweep.axes[a].key] = sweep.axes[a].json(place[a]);
@@ -256,8 +271,8 @@ Sweep read_sweep(TomlTable& table, findings::ExperimentFile& file) {
     Sweep sweep{.name = findings::read_name(table), .title = {}, .axes = {}, .quantities = {}, .checks = {}};
     sweep.title = table.text_or("title", sweep.name);
     file.add_subject(table, "name", sweep.name);
-    sweep.axes = read_sweep_axes(table);
-    for (const SweepAxis& axis : sweep.axes) {
+    sweep.axes = read_axes(table);
+    for (const findings::Axis& axis : sweep.axes) {
         if (axis.key == "model") {
             for (const std::string& model : axis.texts) {
                 if (std::ranges::find(mtf_models(), model) == mtf_models().end()) {
@@ -277,10 +292,10 @@ Sweep read_sweep(TomlTable& table, findings::ExperimentFile& file) {
     }
     const bool has_mtf =
         std::ranges::any_of(sweep.quantities, [](const std::string& key) { return sweep_quantity(key).is_mtf; });
-    if (has_mtf && axis_named(sweep.axes, "frequency_per_mm") == nullptr) {
+    if (has_mtf && findings::axis_named(sweep.axes, "frequency_per_mm") == nullptr) {
         table.fail("measure", "has an MTF, expected frequency_per_mm beside it");
     }
-    if (const std::size_t count = combinations(sweep.axes); count > kMostValues) {
+    if (const std::size_t count = findings::combinations(sweep.axes); count > kMostValues) {
         table.fail("", fmt::format("has {} values, expected {} at most", count, kMostValues));
     }
     read_layout(table, sweep);
@@ -293,7 +308,7 @@ Sweep read_sweep(TomlTable& table, findings::ExperimentFile& file) {
 
 std::vector<SweepValue> measure_sweep(const Sweep& sweep, const findings::RunSettings& settings,
                                       const findings::RunProgress& progress) {
-    const std::size_t count = combinations(sweep.axes);
+    const std::size_t count = findings::combinations(sweep.axes);
     std::vector<SweepValue> values(count);
     parallel_for_workers(
         static_cast<int>(count), settings.threads,
@@ -339,7 +354,11 @@ std::vector<findings::Check> sweep_checks(const Sweep& sweep, const std::vector<
 }
 
 findings::Findings sweep_findings(const Sweep& sweep, const std::vector<SweepValue>& values) {
-    findings::Findings found{.checks = sweep_checks(sweep, values), .subjects_title = "Sweeps"};
+    findings::Findings found{
+        .checks = sweep_checks(sweep, values),
+        .subjects_title = "Sweeps",
+        .not_shown = {"Values are those of the prescription as it is stated, without tolerances of "
+                      "manufacture, at the wavelengths and fields that were asked for."}};
     findings::Subject& subject = found.subjects.emplace_back();
     subject.id = sweep.name;
     subject.kind = "sweep";
@@ -355,7 +374,7 @@ findings::Findings sweep_findings(const Sweep& sweep, const std::vector<SweepVal
     }
     subject.pictures = sweep_charts(sweep, values);
     found.tables = {{"swept", Json::list({sweep_json(sweep, values)})}};
-    for (const std::string& lens : axis_named(sweep.axes, "lens")->texts) {
+    for (const std::string& lens : findings::axis_named(sweep.axes, "lens")->texts) {
         std::ranges::move(formats::files_of_lens(lens), std::back_inserter(found.inputs));
     }
     return found;
@@ -363,7 +382,7 @@ findings::Findings sweep_findings(const Sweep& sweep, const std::vector<SweepVal
 
 std::vector<findings::Study> read_sweeps(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("sweeps")) {
+    for (TomlTable& table : file.tables("sweeps")) {
         const Sweep sweep = read_sweep(table, file);
         const auto carry_out = [sweep](const findings::RunSettings& settings, const findings::RunProgress& progress,
                                        const findings::Findings&) {

@@ -23,7 +23,7 @@ struct SweepCheck {
 struct Sweep {
     std::string name;
     std::string title;
-    std::vector<SweepAxis> axes;
+    std::vector<findings::Axis> axes;
     std::vector<std::string> quantities;
     std::string over;    // the axis that curves run along
     std::string curves;  // the axis that has a curve of each value; empty: none

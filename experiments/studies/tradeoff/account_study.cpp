@@ -308,7 +308,7 @@ static PlannedOutcome outcome_of(const PlannedSet& set, const SceneCase& planned
 
 std::vector<findings::Study> read_planned(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("planned")) {
+    for (TomlTable& table : file.tables("planned")) {
         const PlannedSet set = read_set(table, file);
         const auto carry_out = [set](const findings::RunSettings& settings, const findings::RunProgress& progress,
                                      const findings::Findings&) {

@@ -146,7 +146,7 @@ static constexpr const char* kRingStep = "analysis-rings";
 
 std::vector<findings::Study> read_analysis_rings(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("analysis_rings")) {
+    for (TomlTable& table : file.tables("analysis_rings")) {
         AnalysedLens analysed{.lens = formats::read_lens_name(table)};
         analysed.f_number = table.has("f_number") ? std::optional(table.number("f_number", kPositive)) : std::nullopt;
         analysed.fields_deg = table.numbers("fields_deg", 0, {.min = -90.0, .max = 90.0});

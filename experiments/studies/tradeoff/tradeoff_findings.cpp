@@ -360,6 +360,10 @@ std::string pareto_svg(const std::string& title, const std::vector<MeasuredRung>
 findings::Findings tradeoff_findings(const std::vector<MeasuredScene>& scenes) {
     Sufficient suffices = what_suffices(scenes);
     findings::Findings found{.subjects_title = "Pictures and models", .subjects = std::move(suffices.subjects)};
+    found.not_shown = {
+        "The MTF is by rays, without diffraction, and like place and width of images that of the plane of focus.",
+        "Errors of CIEDE2000 are those of a picture's blocks, and miss noise that is the same all over it.",
+        "Costs are this machine's and differ from run to run; errors do not."};
     Json table = Json::list();
     for (const MeasuredScene& measured : scenes) {
         add_checks(measured, found.checks);

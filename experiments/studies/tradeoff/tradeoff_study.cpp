@@ -121,7 +121,7 @@ std::vector<Rung> rungs_named(const std::vector<std::string>& names) {
 
 std::vector<findings::Study> read_tradeoff(findings::ExperimentFile& file) {
     std::vector<TradeoffScene> scenes;
-    for (TomlTable& table : file.top.tables("tradeoff")) {
+    for (TomlTable& table : file.tables("tradeoff")) {
         std::ranges::move(read_scenes(table, file), std::back_inserter(scenes));
     }
     if (scenes.empty()) {

@@ -250,6 +250,14 @@ findings::Findings twins_of(const TwinSettings& settings, const findings::RunSet
     subject.facts = told.facts();
     table.push_back(told.json(std::move(pictures)));
     findings::Findings found{.checks = {told.check()}};
+    found.not_shown = {
+        "Chief rays alone decide where the chart stood: a lens that is off as a whole (focus, a homography's worth) "
+        "goes "
+        "into the charts' places.",
+        "Blur and vignetting of the prescription are in the twin and are judged by eye and by the pixels' shares, not "
+        "by a "
+        "check.",
+        "A chart that is not flat is rendered flat, and the light on it is even."};
     found.plots.push_back(
         {.id = kResidualPlot,
          .title = "Photos less their twins, along the radius",
@@ -279,7 +287,7 @@ findings::Findings twins_of(const TwinSettings& settings, const findings::RunSet
 
 std::vector<findings::Study> read_twins(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
-    for (TomlTable& table : file.top.tables("twins")) {
+    for (TomlTable& table : file.tables("twins")) {
         TwinSettings twins = read_one(table, file);
         std::string name = twins.name;
         studies.push_back({std::move(name), [twins = std::move(twins)](const findings::RunSettings& settings,

@@ -192,6 +192,38 @@ TEST_F(StrayStudy, LampsAreSeenFromEitherEndOfTheirPaths) {
                      "paths: is \"both ways\", expected one of: camera, light, both"));
 }
 
+// One table stands for many variants, whose pictures stand side by side whatever their sizes, and whose light is drawn
+// over what is varied: twice the time is twice the light, with the same samples.
+TEST_F(StrayStudy, VariesTheScene) {
+    findings::ExperimentFile experiment = file(
+        "[[stray_light]]\nname = \"lamp\"\nscene = \"scene.toml\"\npasses = [\"imaged\", \"direct\"]\ncolumns = 2\n"
+        "[[stray_light.variants]]\nname = \"at\"\n"
+        "vary.scene.camera.shutter_s = [0.01, 0.02]\nvary.scene.camera.coating = [\"none\", \"broadband\"]\n"
+        "[[stray_light.variants]]\nname = \"larger\"\nscene.camera.pixels = [48, 32]\n");
+    const StrayScene read = read_stray_scene(experiment.top.tables("stray_light").at(0), experiment);
+    ASSERT_EQ(read.variants.size(), 5U);
+    EXPECT_EQ(read.variants[3].name, "at-broadband-0_02");
+    EXPECT_EQ(read.variants[3].label, "broadband, shutter_s 0.02");
+    EXPECT_EQ(read.variants[3].setup.camera.coatings, std::vector<std::string>{"broadband"});
+    std::vector<VariantFindings> variants;
+    for (const StrayVariant& variant : read.variants) {
+        variants.push_back(render_variant(read, variant, {}, kSilent));
+    }
+    for (const char* pass : {"imaged", "direct"}) {
+        EXPECT_NEAR(variants[1].light(pass).value, 2.0 * variants[0].light(pass).value,
+                    1e-9 * variants[1].light(pass).value);
+    }
+    const findings::Findings found = stray_findings(read, variants, findings::Quality::full);
+    const std::vector<findings::Picture>& pictures = found.subjects.at(0).pictures;
+    ASSERT_EQ(pictures.size(), 4U);  // three sheets and the chart
+    EXPECT_EQ(pictures[0].width, 2 * 48 + 4);
+    EXPECT_EQ(pictures[0].height, 3 * 32 + 2 * 4);
+    EXPECT_EQ(pictures[3].name, "lamp/light.svg");
+    EXPECT_TRUE(says(pictures[3].bytes, "shutter_s"));
+    EXPECT_TRUE(says(pictures[3].bytes, "broadband"));
+    EXPECT_EQ(found.tables.at(0).second[0]["variants"][1]["at"]["scene.camera.shutter_s"].number(), 0.02);
+}
+
 // Each sample makes the picture better: its error falls as a power, with the root of their number or nearly so.
 TEST_F(StrayStudy, PicturesGrow) {
     findings::ExperimentFile experiment = file(

@@ -46,7 +46,7 @@ wavelength_nm = [486.1327, 656.2725]
 model = "diffraction-limited"
 measure = ["mtf_tangential", "mtf_sagittal"]
 )");
-    ASSERT_EQ(combinations(sweep.axes), 12U);
+    ASSERT_EQ(findings::combinations(sweep.axes), 12U);
     EXPECT_EQ(sweep.over, "f_number");
     EXPECT_EQ(sweep.curves, "wavelength_nm");
     const std::vector<SweepValue> values = measure_sweep(sweep, {.threads = 2}, kQuiet);

@@ -1,4 +1,4 @@
-#include "experiments/studies/sweeps/sweep_axes.h"
+#include "experiments/findings/axis.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,9 +9,8 @@
 #include <filesystem>
 
 #include "engine/base/infinity.h"
-#include "engine/formats/prescription/load_lens.h"
 
-namespace lensproof::studies {
+namespace lensproof::findings {
 
 namespace {
 
@@ -33,10 +32,20 @@ constexpr std::array kNumberAxes = {
     NumberAxis{"wavelength_nm", "Wavelength", "nm", "{:g} nm", {.min = 100.0, .max = 20000.0}},
 };
 
+/// "f_number" of "camera.f_number"
+std::string last_key(const std::string& path) {
+    return path.substr(path.rfind('.') + 1);  // npos + 1 = 0
+}
+
 const NumberAxis* number_axis(const std::string& key) {
     const auto found =
-        std::ranges::find(kNumberAxes, key, [](const NumberAxis& axis) { return std::string(axis.key); });
+        std::ranges::find(kNumberAxes, last_key(key), [](const NumberAxis& axis) { return std::string(axis.key); });
     return found == kNumberAxes.end() ? nullptr : &*found;
+}
+
+/// Of a lens or a scene that a file states: the file's.
+bool names_file(const std::string& key) {
+    return last_key(key) == "lens" || last_key(key) == "scene";
 }
 
 constexpr std::size_t kMostOfAnAxis = 1000;
@@ -76,31 +85,15 @@ std::vector<double> read_range(TomlTable range, const Bounds& bounds) {
     return values;
 }
 
-void check_number(const TomlTable& table, const NumberAxis& axis, double value) {
+void check_number(const TomlTable& table, const std::string& key, const NumberAxis& axis, double value) {
     if (!axis.bounds.hold(value) && !(axis.may_be_infinite && value == kInfinity)) {
-        table.fail(axis.key, fmt::format("is {}, expected {}{}", value, axis.bounds.expectation(),
-                                         axis.may_be_infinite ? ", or inf" : ""));
+        table.fail(key, fmt::format("is {}, expected {}{}", value, axis.bounds.expectation(),
+                                    axis.may_be_infinite ? ", or inf" : ""));
     }
 }
 
-std::vector<double> read_numbers(TomlTable& table, const NumberAxis& axis) {
-    if (table.is_table(axis.key)) {
-        return read_range(table.table(axis.key), axis.bounds);
-    }
-    std::vector<double> values =
-        table.is_number(axis.key) ? std::vector<double>{table.any_number(axis.key)} : table.any_numbers(axis.key);
-    for (const double value : values) {
-        check_number(table, axis, value);
-    }
-    return values;
-}
-
-std::vector<std::string> read_texts(TomlTable& table, const std::string& key) {
-    return table.is_text(key) ? std::vector<std::string>{table.text(key)} : table.texts(key);
-}
-
-/// In the order of the axes; each value once.
-void check_axis(const TomlTable& table, const SweepAxis& axis) {
+/// Each value once.
+void check_axis(const TomlTable& table, const Axis& axis) {
     if (axis.size() == 0 || axis.size() > kMostOfAnAxis) {
         table.fail(axis.key, fmt::format("has {} values, expected 1 to {}", axis.size(), kMostOfAnAxis));
     }
@@ -115,57 +108,63 @@ void check_axis(const TomlTable& table, const SweepAxis& axis) {
 
 }  // namespace
 
-std::string SweepAxis::label(std::size_t i) const {
+std::string Axis::label(std::size_t i) const {
     if (is_text()) {
-        return key == "lens" ? std::filesystem::path(texts[i]).stem().string() : texts[i];
+        return names_file(key) ? std::filesystem::path(texts[i]).stem().string() : texts[i];
+    }
+    if (std::isinf(numbers[i])) {
+        return numbers[i] > 0.0 ? "∞" : "−∞";
     }
     const NumberAxis* axis = number_axis(key);
-    return std::isinf(numbers[i]) ? "∞" : fmt::format(fmt::runtime(axis->label), numbers[i]);
+    return axis == nullptr ? fmt::format("{} {:g}", last_key(key), numbers[i])
+                           : fmt::format(fmt::runtime(axis->label), numbers[i]);
 }
 
-std::string SweepAxis::title() const {
+std::string Axis::title() const {
     const NumberAxis* axis = number_axis(key);
-    return axis == nullptr ? key : axis->title;
+    return axis == nullptr ? last_key(key) : axis->title;
 }
 
-std::string SweepAxis::unit() const {
+std::string Axis::unit() const {
     const NumberAxis* axis = number_axis(key);
     return axis == nullptr ? "" : axis->unit;
 }
 
-Json SweepAxis::json(std::size_t i) const {
+Json Axis::json(std::size_t i) const {
     if (is_text()) {
         return texts[i];
     }
     return std::isinf(numbers[i]) ? Json("infinity") : Json(numbers[i]);
 }
 
-std::vector<SweepAxis> read_sweep_axes(TomlTable& table) {
-    std::vector<SweepAxis> axes{{.key = "lens", .texts = formats::read_lens_names(table)}};
-    const auto add_number = [&](const char* key) {
-        if (table.has(key)) {
-            axes.push_back({.key = key, .texts = {}, .numbers = read_numbers(table, *number_axis(key))});
-        }
-    };
-    if (table.has("zoom")) {
-        axes.push_back({.key = "zoom", .texts = read_texts(table, "zoom")});
-    }
-    add_number("f_number");
-    add_number("focus_distance_mm");
-    add_number("image_shift_mm");
-    if (table.has("model")) {
-        axes.push_back({.key = "model", .texts = read_texts(table, "model")});
-    }
-    add_number("frequency_per_mm");
-    add_number("field_deg");
-    add_number("wavelength_nm");
-    for (const SweepAxis& axis : axes) {
-        check_axis(table, axis);
-    }
-    return axes;
+Axis text_axis(const TomlTable& table, const std::string& key, std::vector<std::string> texts) {
+    Axis axis{.key = key, .texts = std::move(texts)};
+    check_axis(table, axis);
+    return axis;
 }
 
-std::vector<std::size_t> place_of(const std::vector<SweepAxis>& axes, std::size_t i) {
+Axis read_text_axis(TomlTable& table, const std::string& key) {
+    return text_axis(table, key, table.is_text(key) ? std::vector{table.text(key)} : table.texts(key));
+}
+
+Axis read_number_axis(TomlTable& table, const std::string& key) {
+    const NumberAxis* known = number_axis(key);
+    Axis axis{.key = key};
+    if (table.is_table(key)) {
+        axis.numbers = read_range(table.table(key), known == nullptr ? kAnyNumber : known->bounds);
+    } else {
+        axis.numbers = table.is_number(key) ? std::vector{table.any_number(key)} : table.any_numbers(key);
+        for (const double value : axis.numbers) {
+            if (known != nullptr) {
+                check_number(table, key, *known, value);
+            }
+        }
+    }
+    check_axis(table, axis);
+    return axis;
+}
+
+std::vector<std::size_t> place_of(const std::vector<Axis>& axes, std::size_t i) {
     std::vector<std::size_t> place(axes.size());
     for (std::size_t a = axes.size(); a-- > 0;) {
         place[a] = i % axes[a].size();
@@ -174,18 +173,18 @@ std::vector<std::size_t> place_of(const std::vector<SweepAxis>& axes, std::size_
     return place;
 }
 
-std::size_t combinations(const std::vector<SweepAxis>& axes) {
+std::size_t combinations(const std::vector<Axis>& axes) {
     std::size_t count = 1;
-    for (const SweepAxis& axis : axes) {
+    for (const Axis& axis : axes) {
         constexpr std::size_t kPlenty = 1U << 30U;  // and no overflow
         count = std::min(kPlenty, count * axis.size());
     }
     return count;
 }
 
-const SweepAxis* axis_named(const std::vector<SweepAxis>& axes, const std::string& key) {
-    const auto found = std::ranges::find(axes, key, &SweepAxis::key);
+const Axis* axis_named(const std::vector<Axis>& axes, const std::string& key) {
+    const auto found = std::ranges::find(axes, key, &Axis::key);
     return found == axes.end() ? nullptr : &*found;
 }
 
-}  // namespace lensproof::studies
+}  // namespace lensproof::findings
