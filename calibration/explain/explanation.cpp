@@ -135,6 +135,19 @@ const char* fit_verdict_name(FitVerdict verdict) {
     return "unexplained";
 }
 
+std::optional<PrescribedResidual> prescribed_residual(const optics::Lens& lens, const NamedProfile& profile,
+                                                      std::optional<double> focus_mm) {
+    SeenPoints seen = seen_points({profile});
+    const ExplainedLens explained = explained_lens(lens, seen, {}, focus_mm);
+    const int not_imaged = keep_imaged(explained, seen);
+    if (seen.count() <= not_imaged || seen.views.empty()) {
+        return std::nullopt;
+    }
+    const auto fit = fit_lens(explained, seen, start_of(explained, seen), prescribed_belief(explained.changes));
+    return fit ? std::optional(PrescribedResidual{rms_um(seen, fit->residuals), noise_um(seen), seen.count()})
+               : std::nullopt;
+}
+
 LensExplanation explain(const optics::Lens& lens, const std::vector<NamedProfile>& profiles,
                         const ExplainSettings& settings) {
     SeenPoints seen = seen_points(profiles);

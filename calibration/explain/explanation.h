@@ -50,4 +50,16 @@ struct ExplainSettings {
 LensExplanation explain(const optics::Lens& lens, const std::vector<NamedProfile>& profiles,
                         const ExplainSettings& settings = {});
 
+/// What the prescription leaves of a profile's points as it stands, where nothing but the charts' places and the
+/// picture's scale is fitted.
+struct PrescribedResidual {
+    double rms_um = 0.0;    // of a point
+    double noise_um = 0.0;  // what measuring alone would leave
+    int points = 0;
+};
+
+/// Nothing where the lens does not image the points. Throws InputError as `explain`.
+std::optional<PrescribedResidual> prescribed_residual(const optics::Lens& lens, const NamedProfile& profile,
+                                                      std::optional<double> focus_mm);
+
 }  // namespace lensproof::calibration

@@ -87,6 +87,7 @@ void add_convert_command(Program& program);
 void add_export_command(Program& program);
 void add_run_command(Program& program);
 void add_demo_command(Program& program);
+void add_twins_command(Program& program);
 void add_tradeoff_command(Program& program);
 void add_plan_command(Program& program);
 void add_lenses_command(Program& program);

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <memory>
 
+#include "calibration/explain/explanation.h"
 #include "calibration/profile/curve_difference.h"
 #include "calibration/profile/profile.h"
 #include "engine/base/cache.h"
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/compare_measured.h"
 #include "experiments/cli/compare_pictures.h"
@@ -30,6 +32,7 @@ struct CompareOptions {
     double position_limit_px = 0.0;
     double vignetting_limit_ev = 0.0;
     double chromatic_limit_px = 0.0;
+    double points_limit_um = 0.0;
     double f_number = 8.0;
     double focus_mm = kInfinity;
     std::string response = "camera";
@@ -68,12 +71,10 @@ std::pair<calibration::Profile, std::vector<optics::Finding>> profile_of_lens(co
             fmt::format("{} has no pixel_pitch_um, which {} needs to be compared with it: expected --pixel-pitch",
                         lens == options.a ? options.b : options.a, lens));
     }
-    const render::CameraSettings camera{.lens = lens,
-                                        .f_number = options.f_number,
-                                        .focus_distance_mm = options.focus_mm,
-                                        .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3},
-                                        .exposure = {},
-                                        .response = options.response};
+    render::CameraSettings camera = studies::camera_like(like, lens);
+    camera.f_number = options.f_number;
+    camera.focus_distance_mm = options.focus_mm;
+    camera.response = options.response;
     const render::Camera seen(camera, {}, {}, Cache::standard());
     print_findings(options.common, *seen.lens());
     return {studies::lens_profile(seen), seen.lens()->findings};
@@ -104,9 +105,42 @@ int report(const std::vector<ComparedRow>& rows, const Json& curves, const std::
     return status;
 }
 
+/// How far the profile's points are from where the lens images them, beyond what measuring them leaves.
+std::optional<ComparedRow> points_row(const std::string& lens, const std::string& file,
+                                      const calibration::Profile& profile, const CompareOptions& options) {
+    const bool has_points = profile.geometry && profile.pixel_pitch_um && !profile.views.empty();
+    const auto found = has_points
+                           ? calibration::prescribed_residual(
+                                 formats::load_lens(lens), {file, profile},
+                                 std::isfinite(options.focus_mm) ? std::optional(options.focus_mm) : std::nullopt)
+                           : std::nullopt;
+    if (!found) {
+        return std::nullopt;
+    }
+    const double square = found->rms_um * found->rms_um;
+    const double square_sigma = square / std::sqrt(found->points);  // of two coordinates each
+    const double beyond = std::sqrt(std::max(0.0, square - found->noise_um * found->noise_um));
+    ComparedRow row;
+    row.limited = options.points_limit_um > 0.0;
+    row.check.id = row.check.label = "points";
+    row.check.unit = "µm";
+    row.key_suffix = "_um";
+    row.check.limit = options.points_limit_um;
+    row.check.value = beyond;
+    row.check.sigma = std::min(square_sigma / (2.0 * beyond), std::sqrt(square_sigma));
+    return row;
+}
+
 int compare_profiles(const calibration::Profile& a, const calibration::Profile& b,
-                     const std::vector<optics::Finding>& findings, const CompareOptions& options) {
+                     const std::vector<optics::Finding>& findings, const CompareOptions& options,
+                     const std::optional<ComparedRow>& points = std::nullopt) {
     std::vector<ComparedRow> rows;
+    if (points) {
+        rows.push_back(*points);
+    } else if (options.points_limit_um > 0.0) {
+        throw InputError(fmt::format("{} and {}: no points that the lens images, to hold against --points-limit",
+                                     options.a, options.b));
+    }
     Json curves;
     const auto add = [&](const std::string& name, const calibration::Unit& unit,
                          const std::optional<calibration::CurveDifference>& found, double limit) {
@@ -167,7 +201,8 @@ void check_limits(bool profiles, const CompareOptions& options) {
         {"--position-limit", options.position_limit_px},
         {"--distortion-limit", options.distortion_limit_percent},
         {"--vignetting-limit", options.vignetting_limit_ev},
-        {"--chromatic-limit", options.chromatic_limit_px}};
+        {"--chromatic-limit", options.chromatic_limit_px},
+        {"--points-limit", options.points_limit_um}};
     for (const auto& [name, limit] : profiles ? options.pictures.limits() : of_profiles) {
         if (limit > 0.0) {
             throw InputError(fmt::format("{} is given, which is a limit of {}; {} and {} are {}", name,
@@ -205,12 +240,12 @@ int run_compare(const CompareOptions& options) {
     if (a_is_profile && is_lens(options.b)) {
         const calibration::Profile a = read_profile(options.a, options);
         const auto [lens, findings] = profile_of_lens(options.b, a, options);
-        return compare_profiles(a, lens, findings, options);
+        return compare_profiles(a, lens, findings, options, points_row(options.b, options.a, a, options));
     }
     if (b_is_profile && is_lens(options.a)) {
         const calibration::Profile b = read_profile(options.b, options);
         const auto [lens, findings] = profile_of_lens(options.a, b, options);
-        return compare_profiles(lens, b, findings, options);
+        return compare_profiles(lens, b, findings, options, points_row(options.a, options.b, b, options));
     }
     return compare_pictures(options.a, options.b, options.pictures, options.common);
 }
@@ -234,6 +269,11 @@ void add_compare_command(Program& program) {
         .check(kPositiveOption);
     command.add_option("--chromatic-limit", options->chromatic_limit_px, "Limit of chromatic shift, rms, px")
         .check(kPositiveOption);
+    command
+        .add_option("--points-limit", options->points_limit_um,
+                    "Limit of how far a lens images a profile's points from where they are, beyond their noise, um")
+        .check(kPositiveOption)
+        .type_name("UM");
     add_picture_options(command, options->pictures);
     command.add_option("--f-number", options->f_number, "f-number of a lens").check(kPositiveOption).shows_default();
     command.add_option("--focus", options->focus_mm, "Focus distance of a lens, mm, or inf")

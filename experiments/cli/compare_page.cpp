@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "calibration/statistics/order_statistics.h"
 #include "experiments/cli/compare_maps.h"
@@ -132,6 +133,12 @@ std::string command_of(const std::string& a, const std::string& b, const Picture
     std::string command = fmt::format(
         "lensproof compare {} {} --registration {} --exposure {} --pixels-per-degree {:g}", runner::portable_path(a),
         runner::portable_path(b), options.registration, options.exposure, options.pixels_per_degree);
+    for (const std::string& edge : options.edges) {
+        command += " --edge " + edge;
+    }
+    for (const std::string& spot : options.spots) {
+        command += " --spot " + spot;
+    }
     for (const auto& [name, limit] : options.limits()) {
         command += limit > 0.0 ? fmt::format(" {} {:g}", name, limit) : "";
     }
@@ -141,7 +148,7 @@ std::string command_of(const std::string& a, const std::string& b, const Picture
 }  // namespace
 
 std::string comparison_page(const PageSubject& a, const std::string& b, const calibration::PictureComparison& found,
-                            const PictureOptions& options) {
+                            const ComparedPlaces& places, const PictureOptions& options) {
     const double gain = shown_gain(a);
     const std::vector<DrawnMap> maps = drawn_maps(found);
     const auto& [name_a, name_b] = short_names(a.file, b);
@@ -158,7 +165,17 @@ std::string comparison_page(const PageSubject& a, const std::string& b, const ca
                              .label = fmt::format("{} and {}", name_a, name_b),
                              .facts = facts(found, a.image, gain, maps, options),
                              .pictures = {layered(a, found, gain, maps, fmt::format("A: {}, B: {}", name_a, name_b))}});
+    findings::Subject& subject = page.subjects.front();
+    std::ranges::move(place_facts(places, a.image), std::back_inserter(subject.facts));
+    std::ranges::move(place_pictures(places), std::back_inserter(subject.pictures));
     page.inputs = {a.file, b};
+    page.not_shown = {
+        "What the registration and the exposure's gains can express has been taken out of the pictures before anything "
+        "was "
+        "told of them: their parameters are among the numbers.",
+        "Noise is in all numbers but the map of the difference; a limit that holds for two noisy pictures may be one "
+        "of "
+        "their noise."};
     const std::string summary =
         fmt::format("SSIM {}, FLIP {}, CIEDE2000 {} on average, after B was brought over A ({}) and to its exposure.{}",
                     with_error(found.ssim), with_error(found.flip), with_error(found.ciede2000_mean),

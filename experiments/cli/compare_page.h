@@ -4,6 +4,7 @@
 
 #include "calibration/comparison/picture_comparison.h"
 #include "experiments/cli/compare_pictures.h"
+#include "experiments/cli/compare_places.h"
 
 namespace lensproof::cli {
 
@@ -14,8 +15,8 @@ struct PageSubject {
 };
 
 /// The page (experiments/draw/report/report.h): `a` and `b` over it laid over each other, with their maps, numbers,
-/// limits and radial curves. `found` has maps.
+/// limits, radial curves, and what was found at places of both. `found` has maps.
 std::string comparison_page(const PageSubject& a, const std::string& b, const calibration::PictureComparison& found,
-                            const PictureOptions& options);
+                            const ComparedPlaces& places, const PictureOptions& options);
 
 }  // namespace lensproof::cli

@@ -15,6 +15,7 @@
 #include "engine/formats/image/picture_file.h"
 #include "experiments/cli/compare_maps.h"
 #include "experiments/cli/compare_page.h"
+#include "experiments/cli/compare_places.h"
 #include "experiments/cli/compare_report.h"
 #include "experiments/cli/picture_measures.h"
 #include "experiments/cli/terminal.h"
@@ -115,10 +116,6 @@ calibration::ComparisonWishes wishes_of(const PictureOptions& options, const Rea
     return wishes;
 }
 
-Json estimate_json(const Estimate& estimate) {
-    return {{"value", estimate.value}, {"standard_error", estimate.standard_error}};
-}
-
 Json registration_json(const calibration::Registration& registration) {
     Json parameters = Json::object();
     for (const auto& [name, estimate] : registration.parameters) {
@@ -207,6 +204,10 @@ void check_comparable(const std::string& files, const std::string& why, const Pi
             throw InputError(fmt::format("{}: {}, so that nothing can be held against {}", files, why, name));
         }
     }
+    if (options.has_places()) {
+        throw InputError(fmt::format("{}: {}, so that there is nothing for {} to measure", files, why,
+                                     options.edges.empty() ? "--spot" : "--edge"));
+    }
     if (options.is_shown()) {
         throw InputError(fmt::format("{}: {}, so that there is nothing for {} to show", files, why,
                                      options.maps_folder.empty() ? "--report" : "--maps"));
@@ -275,6 +276,16 @@ void add_picture_options(Command& command, PictureOptions& options) {
     command.add_option("--exposure", options.exposure, "B's channels' brightness: match (a gain each) or none")
         .check(one_of({"match", "none"}))
         .shows_default();
+    command
+        .add_option(
+            "--edge", options.edges,
+            "Sharpness of both at the same edges: a rectangle x,y,width,height (px of A) that holds one; whole; "
+            "or auto for all that are found")
+        .type_name("EDGE");
+    command
+        .add_option("--spot", options.spots,
+                    "A box x,y,width,height (px of A) that holds a patch of light, as a lamp out of focus or a ghost")
+        .type_name("BOX");
     command.add_option("--maps", options.maps_folder, "Folder for maps of two pictures' differences, PNG")
         .type_name("DIR");
     command.add_option("--report", options.report_file, "Page that lays two pictures over each other, HTML")
@@ -307,15 +318,23 @@ int compare_pictures(const std::string& a, const std::string& b, const PictureOp
     check_alike(one.image, a, other.image, b);
     const std::string files = fmt::format("{} and {}", a, b);
     const std::vector<ComparedRow> rows = channel_rows(one.image, other.image, options.rms_limit);
-    const std::optional<PictureComparison> found =
-        compared(one, other, files, options, wishes_of(options, one, other, common));
+    const calibration::ComparisonWishes wishes = wishes_of(options, one, other, common);
+    const formats::Image as_it_is = options.has_places() ? other.image : formats::Image{};
+    const std::optional<PictureComparison> found = compared(one, other, files, options, wishes);
+    const bool is_alike = found && found->registration.likeness != calibration::Likeness::unlike;
+    const ComparedPlaces places =
+        is_alike ? compare_places(one.image, as_it_is, *found, wishes.clipped, options, files) : ComparedPlaces{};
     Json json{{"a", a}, {"b", b}, {"findings", Json::list()}};
     int status = report_rows(rows, a, b, common, json);
     if (found) {
         status = std::max(status, report_comparison(*found, one.image, options, common, json));
+        add_places_json(places, one.image, json);
+        if (prints_text(common)) {
+            print_places(places, one.image);
+        }
     }
     if (found && found->b_over_a && !options.report_file.empty()) {
-        write_file(options.report_file, comparison_page({a, one.image, one.is_high_range}, b, *found, options));
+        write_file(options.report_file, comparison_page({a, one.image, one.is_high_range}, b, *found, places, options));
     }
     write_json_result(common, json);
     return status;

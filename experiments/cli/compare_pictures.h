@@ -13,6 +13,8 @@ namespace lensproof::cli {
 struct PictureOptions {
     std::string registration = "auto";
     std::string exposure = "match";
+    std::vector<std::string> edges;
+    std::vector<std::string> spots;
     std::string maps_folder;
     std::string report_file;
     double pixels_per_degree = calibration::kFlipPixelsPerDegree;
@@ -25,6 +27,9 @@ struct PictureOptions {
 
     /// Whether there is to be something to look at.
     [[nodiscard]] bool is_shown() const { return !maps_folder.empty() || !report_file.empty(); }
+
+    /// Whether anything is to be measured at places of both.
+    [[nodiscard]] bool has_places() const { return !edges.empty() || !spots.empty(); }
 
     /// By the options' names.
     [[nodiscard]] std::vector<std::pair<const char*, double>> limits() const;

@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
-#include <sstream>
 
 #include "calibration/detection/detect.h"
 #include "calibration/measure/measure.h"
@@ -15,45 +13,15 @@
 #include "engine/base/write_file.h"
 #include "engine/scene/chart/chart_file.h"
 #include "experiments/cli/measure_parts.h"
+#include "experiments/cli/pixel_rectangles.h"
 #include "experiments/cli/progress.h"
 
 namespace lensproof::cli {
 
 namespace {
 
-constexpr const char* kAnyEdges = "auto";
-
-// "x,y,width,height" or "whole".
-calibration::PixelRectangle parse_rectangle(const std::string& text) {
-    if (text == "whole") {
-        return {};
-    }
-    std::vector<int> numbers;
-    std::istringstream fields(text);
-    for (std::string field; std::getline(fields, field, ',');) {
-        int value = 0;
-        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-        if (error != std::errc() || end != field.data() + field.size()) {
-            break;
-        }
-        numbers.push_back(value);
-    }
-    const bool is_rectangle = numbers.size() == 4 && std::count(text.begin(), text.end(), ',') == 3 &&
-                              numbers[0] >= 0 && numbers[1] >= 0 && numbers[2] > 0 && numbers[3] > 0;
-    if (!is_rectangle) {
-        throw InputError(fmt::format("--edge: found \"{}\", expected x,y,width,height in pixels, whole or auto", text));
-    }
-    return {numbers[0], numbers[1], numbers[2], numbers[3]};
-}
-
 void add_sharpness_input(calibration::MeasureInput& input, const MeasureOptions& options) {
-    for (const std::string& edge : options.edges) {
-        if (edge != kAnyEdges) {
-            input.edges.push_back(parse_rectangle(edge));
-        } else if (options.edges.size() > 1) {
-            throw InputError(fmt::format("--edge: \"{}\" beside others: expected it alone, or rectangles", kAnyEdges));
-        }
-    }
+    input.edges = parse_edges(options.edges);
     std::vector<std::string> names;
     for (calibration::Picture& picture : input.pictures) {
         if (picture.role == calibration::PictureRole::chart) {
@@ -92,19 +60,6 @@ const OptionCheck kTransferOption{
     },
     "CURVE"};
 
-/// Folders stand for the pictures in them. A name that was given has to be there.
-std::vector<std::filesystem::path> expanded(const std::vector<std::string>& names) {
-    std::vector<std::filesystem::path> files;
-    for (const std::string& name : names) {
-        if (!std::filesystem::is_directory(name)) {
-            check_readable(name);
-        }
-        const std::vector<std::filesystem::path> found = calibration::picture_files(name);
-        files.insert(files.end(), found.begin(), found.end());
-    }
-    return files;
-}
-
 int run_measure(const MeasureOptions& options) {
     if (!options.output.empty() && !options.each) {
         check_output_name(options.output);
@@ -126,7 +81,7 @@ int run_measure(const MeasureOptions& options) {
         throw InputError("measure: expected --chart FILE, or --edge for pictures of edges without a chart");
     }
     const scene::Chart chart = options.edges.empty() ? chart_to_find(options.chart) : scene::Chart{};
-    const std::vector<std::filesystem::path> pictures = expanded(options.images);
+    const std::vector<std::filesystem::path> pictures = pictures_named(options.images);
     if (options.each) {
         return measure_each(options, source, chart, pictures);
     }
@@ -140,6 +95,18 @@ int run_measure(const MeasureOptions& options) {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> pictures_named(const std::vector<std::string>& names) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& name : names) {
+        if (!std::filesystem::is_directory(name)) {
+            check_readable(name);
+        }
+        const std::vector<std::filesystem::path> found = calibration::picture_files(name);
+        files.insert(files.end(), found.begin(), found.end());
+    }
+    return files;
+}
 
 calibration::MeasureInput measure_input(const MeasureOptions& options, const calibration::ProfileSource& source,
                                         const scene::Chart& chart, const std::string& name,
@@ -156,7 +123,7 @@ calibration::MeasureInput measure_input(const MeasureOptions& options, const cal
     if (options.pixel_pitch_um > 0.0) {
         input.pixel_pitch_um = options.pixel_pitch_um;
     }
-    const calibration::PhotoSurvey survey = calibration::survey_photos(pictures, expanded(options.flat_fields),
+    const calibration::PhotoSurvey survey = calibration::survey_photos(pictures, pictures_named(options.flat_fields),
                                                                        formats::parse_transfer_curve(options.transfer));
     calibration::take_survey(input, survey);
     if (options.focal_length_mm > 0.0) {

@@ -1,5 +1,6 @@
 // experiments/cli/measure_parts.h — the parts of the command `measure`.
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct MeasureOptions {
     std::string mosaic;
     std::vector<double> image_centre_px;
 };
+
+/// Folders stand for the pictures in them. Throws InputError for a name that is not there.
+std::vector<std::filesystem::path> pictures_named(const std::vector<std::string>& names);
 
 /// The chart of a file that has one. Throws InputError for a kind that is not measured.
 scene::Chart chart_to_find(const std::string& file);

@@ -66,6 +66,7 @@ int run(const std::vector<std::string>& arguments, std::ostream& result) {
     add_compare_command(program);
     add_export_command(program);
     add_run_command(program);
+    add_twins_command(program);
     add_tradeoff_command(program);
     add_plan_command(program);
     add_lenses_command(program);

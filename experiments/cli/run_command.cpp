@@ -17,6 +17,7 @@
 #include "experiments/cli/command.h"
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
+#include "experiments/cli/run_parts.h"
 #include "experiments/cli/run_plan.h"
 #include "experiments/cli/shard.h"
 #include "experiments/cli/terminal.h"
@@ -255,6 +256,14 @@ int run(const RunOptions& options) {
 }
 
 }  // namespace
+
+int run_experiment_file(const std::string& experiment, const std::string& folder, const CommonOptions& common) {
+    RunOptions options;
+    options.common = common;
+    options.experiment = experiment;
+    options.output = folder;
+    return run(options);
+}
 
 void add_run_command(Program& program) {
     const auto options = std::make_shared<RunOptions>();

@@ -126,6 +126,55 @@ TEST(ComparePicturesCommand, WritesAPageThatLaysThemOverEachOther) {
     EXPECT_FALSE(std::filesystem::exists(place.path() / "uv.html"));
 }
 
+/// A slanted edge and beside it a disc of light, each `soft` px from dark to bright.
+formats::Image edge_and_lamp(double soft, double radius) {
+    formats::Image image = formats::make_image(160, 96, {"R", "G", "B"});
+    const auto ramp = [&](double inwards) { return 0.5 + 0.5 * std::tanh(inwards / soft); };
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const double paper = 0.5 * ramp(0.996 * (40.0 - x) + 0.09 * (y - 48.0));
+            const double lamp = ramp(radius - std::hypot(x - 115.0, y - 50.0));
+            for (int c = 0; c < 3; ++c) {
+                image.at(x, y, c) = static_cast<float>(0.1 + paper + 0.3 * lamp);
+            }
+        }
+    }
+    return image;
+}
+
+// The disc of a quarter more radius has the diameter that its moments say, and (5/4)² of the light.
+TEST(ComparePicturesCommand, TellsOfEdgesAndOfPatchesOfLight) {
+    const Workplace place;
+    formats::write_exr(edge_and_lamp(0.8, 12.0), place.path() / "a.exr");
+    formats::write_exr(edge_and_lamp(1.6, 15.0), place.path() / "b.exr");
+    const std::vector<std::string> as_they_are{"compare",     "a.exr",      "b.exr",      "--registration",
+                                               "none",        "--exposure", "none",       "--edge",
+                                               "15,10,50,76", "--spot",     "85,20,60,60"};
+    const Json json = place.json(as_they_are);
+    EXPECT_EQ(json["mtf"]["edges"], 1);
+    EXPECT_EQ(json["mtf"]["channel"], "G");
+    EXPECT_NEAR(json["mtf"]["mtf50_ratio"]["value"].get<double>(), 0.5, 0.05);
+    EXPECT_EQ(json["mtf"]["a"].size(), json["mtf"]["difference"].size());
+    const Json& spot = json["spots"][0];
+    EXPECT_NEAR(spot["a"]["diameter_px"]["value"].get<double>(), 24.0, 0.3);
+    EXPECT_NEAR(spot["diameter_ratio"]["value"].get<double>(), 1.25, 0.02);
+    EXPECT_NEAR(spot["light_ev"]["value"].get<double>(), 2.0 * std::log2(1.25), 0.02);
+    EXPECT_NEAR(spot["shift_x_px"]["value"].get<double>(), 0.0, 0.01);
+    EXPECT_NEAR(spot["colour_ev"]["R"]["value"].get<double>(), 0.0, 1e-6);
+
+    std::vector<std::string> with_page = as_they_are;
+    with_page.insert(with_page.end(), {"--report", "page.html"});
+    const auto printed = place.run(with_page);
+    EXPECT_TRUE(says(printed.out, "MTF50, B over A"));
+    EXPECT_TRUE(says(printed.out, "spot, diameter"));
+    for (const char* part : {"The mean of both pictures", "spot, diameter", "--spot 85,20,60,60"}) {
+        EXPECT_TRUE(says(read_file(place.path() / "page.html"), part));
+    }
+    expect_refused(place, {"compare", "a.exr", "b.exr", "--spot", "1,2,3"}, {"--spot: found \"1,2,3\""});
+    expect_refused(place, {"compare", "a.exr", "b.exr", "--spot", "150,2,30,30"}, {"--spot", "the box 150,2,30,30"});
+    expect_refused(place, {"compare", "a.exr", "b.exr", "--registration", "none", "--edge", "90,60,20,20"}, {"--edge"});
+}
+
 TEST(ComparePicturesCommand, RefusesWhatCannotBeCompared) {
     const Workplace place;
     formats::write_png(scene(0.0, 0.0), place.path() / "a.png");

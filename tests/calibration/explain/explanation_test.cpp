@@ -53,6 +53,12 @@ class ExplainedFaults : public testing::TestWithParam<Trial> {};
 // 0.3 % do not.
 TEST_P(ExplainedFaults, AreNamedWithinTheirErrors) {
     const Trial& trial = GetParam();
+    // As prescribed the lens leaves more than noise: of n points' mean square that is known to 1 / √n.
+    const auto prescribed = prescribed_residual(formats::load_lens(trial.studio.lens),
+                                                {"profile.json", simulated_profile(trial.studio, trial.faults, 1)},
+                                                trial.studio.distance_mm);
+    ASSERT_TRUE(prescribed);
+    EXPECT_GT(std::pow(prescribed->rms_um / prescribed->noise_um, 2), 1.0 + 3.0 / std::sqrt(prescribed->points));
     unsigned named = 0;
     const unsigned seeds = trials(4U, 1U);
     for (unsigned seed = 1; seed <= seeds; ++seed) {
@@ -91,6 +97,11 @@ TEST(Explanation, NoiseAloneIsNotExplained) {
             EXPECT_EQ(found.verdict, FitVerdict::unexplained) << found.reason;
             EXPECT_EQ(found.cause, "");
             EXPECT_LT(std::abs(found.held_out.significance), 3.0);
+            const auto prescribed =
+                prescribed_residual(formats::load_lens(studio.lens),
+                                    {"profile.json", simulated_profile(studio, {}, seed)}, studio.distance_mm);
+            ASSERT_TRUE(prescribed);
+            EXPECT_LT(prescribed->rms_um, 1.1 * prescribed->noise_um);
         }
     }
 }
