@@ -61,17 +61,29 @@ Photos read_one(TomlTable& table, findings::ExperimentFile& file) {
 struct ShownPhoto {
     int width = 0;
     int height = 0;
-    std::string png;
+    std::string jpeg;
 };
 
 void fields(JsonArchive& json, ShownPhoto& photo) {
-    json.field("width", photo.width).field("height", photo.height).packed("png", photo.png);
+    json.field("width", photo.width).field("height", photo.height).packed("jpeg", photo.jpeg);
 }
 
-ShownPhoto shown_photo(const calibration::Picture& picture) {
+/// The width that lets a report of so many photos stay small: together they have twelve megapixels, and none is shown
+/// smaller than others are.
+int shown_width(std::size_t photos) {
+    constexpr double kPixels = 12e6;
+    constexpr double kAspect = 1.5;
+    return std::max(
+        findings::kShownWidth,
+        static_cast<int>(std::sqrt(kAspect * kPixels / static_cast<double>(std::max<std::size_t>(1, photos)))));
+}
+
+ShownPhoto shown_photo(const calibration::Picture& picture, int widest) {
     try {
         const formats::Image image = picture.load();
-        return {.width = image.width, .height = image.height, .png = findings::shown_picture("", "", image).bytes};
+        return {.width = image.width,
+                .height = image.height,
+                .jpeg = findings::shown_picture(".jpg", "", image, widest).bytes};
     } catch (const InputError&) {
         return {};
     }
@@ -127,8 +139,10 @@ calibration::MeasureInput surveyed(const Photos& photos, const findings::RunSett
     return input;
 }
 
-findings::StepInput photo_input(const calibration::Picture& picture) {
-    return {.settings = reading(), .files = {picture.name}};
+findings::StepInput photo_input(const calibration::Picture& picture, int widest) {
+    Json settings = reading();
+    settings["widest"] = widest;
+    return {.settings = std::move(settings), .files = {picture.name}};
 }
 
 /// Of all that is measured in the pictures.
@@ -150,8 +164,9 @@ std::string words_of(const Photos& photos, const calibration::Picture& picture) 
 std::vector<findings::PlannedStep> steps_of(const Photos& photos, const findings::RunSettings& settings) {
     const calibration::MeasureInput input = surveyed(photos, settings);
     std::vector<findings::PlannedStep> steps;
+    const int widest = shown_width(input.pictures.size());
     for (const calibration::Picture& picture : input.pictures) {
-        steps.push_back({kPhotoStep, words_of(photos, picture), photo_input(picture), 0.2});
+        steps.push_back({kPhotoStep, words_of(photos, picture), photo_input(picture, widest), 0.2});
     }
     const findings::StepInput all = measured_input(photos, input);
     std::ranges::move(steps_of_measurement(photos.name, all, settings), std::back_inserter(steps));
@@ -172,17 +187,18 @@ MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings&
         .subject = {.id = photos.name, .kind = "photos", .label = set.name}, .profile = {}, .traced = {}};
     std::vector<findings::Picture>& pictures = camera.subject.pictures;
     const calibration::MeasureInput input = surveyed(photos, settings);
+    const int widest = shown_width(input.pictures.size());
     for (const calibration::Picture& picture : input.pictures) {
         const std::filesystem::path file = picture.name;
         progress(words_of(photos, picture), 0.0);
         const ShownPhoto shown =
-            settings.steps.step(kPhotoStep, photo_input(picture), [&] { return shown_photo(picture); });
+            settings.steps.step(kPhotoStep, photo_input(picture, widest), [&] { return shown_photo(picture, widest); });
         pictures.push_back(
-            {.name = fmt::format("{}/{:02}-{}.png", photos.name, pictures.size() + 1, file.stem().string()),
+            {.name = fmt::format("{}/{:02}-{}.jpg", photos.name, pictures.size() + 1, file.stem().string()),
              .caption = file.filename().string(),
              .width = shown.width,
              .height = shown.height,
-             .bytes = shown.png});
+             .bytes = shown.jpeg});
     }
     progress(photos.name + ", measuring", 0.0);
     const findings::StepInput all = measured_input(photos, input);
