@@ -13,6 +13,7 @@
 #include "engine/analysis/veiling_glare.h"
 #include "engine/base/angle.h"
 #include "engine/formats/image/image_json.h"
+#include "engine/formats/image/srgb.h"
 #include "engine/render/film/film_image.h"
 #include "engine/render/integrators/integrators.h"
 #include "engine/render/prepared_scene.h"
@@ -53,10 +54,9 @@ double error_of(const render::PixelEstimate& pixel) {
     return (std::sqrt(pixel.variance.x) + std::sqrt(pixel.variance.y) + std::sqrt(pixel.variance.z)) / 3.0;
 }
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
+/// What a print or a display makes of a light, both from 0 to 1.
+double displayed(double light) {
+    return formats::linear_to_srgb(static_cast<float>(std::clamp(light, 0.0, 1.0)));
 }
 
 /// A variance is that of blocks of samples.
@@ -353,25 +353,24 @@ Estimate VariantFindings::ghost_energy(int surface, bool is_involved) const {
 }
 
 std::optional<double> VariantFindings::noise() const {
-    constexpr double kSeen = 0.01;  // of white
     if (!std::ranges::all_of(passes, [](const PassPicture& pass) { return !pass.error.pixels.empty(); })) {
         return std::nullopt;
     }
     const formats::Image picture = picture_of(passes);
-    std::vector<double> relative;
-    for (std::size_t i = 0; i < passes.front().error.pixels.size(); ++i) {
+    const std::size_t pixels = passes.front().error.pixels.size();
+    double squares = 0.0;
+    for (std::size_t i = 0; i < pixels; ++i) {
         const float* rgb = picture.pixels.data() + 3 * i;
         const double light = (rgb[0] + rgb[1] + rgb[2]) / 3.0;
-        if (light < kSeen) {
-            continue;
-        }
-        double square = 0.0;
+        double variance = 0.0;
         for (const PassPicture& pass : passes) {
-            square += double{pass.error.pixels[i]} * pass.error.pixels[i];
+            variance += double{pass.error.pixels[i]} * pass.error.pixels[i];
         }
-        relative.push_back(std::sqrt(square) / light);
+        const double sigma = std::sqrt(variance);
+        const double shown = 0.5 * (displayed(light + sigma) - displayed(light - sigma));
+        squares += shown * shown;
     }
-    return relative.empty() ? std::nullopt : std::optional(median(std::move(relative)));
+    return std::sqrt(squares / static_cast<double>(pixels));
 }
 
 formats::Image picture_of(const std::vector<PassPicture>& passes) {

@@ -65,11 +65,11 @@ findings::Check light_check(const StrayScene& scene, const StrayCheck& wanted,
 
 findings::Check noise_check(const StrayScene& scene, const StrayVariant& variant, double noise) {
     findings::Check check = about(scene, variant.name, {.limit = *scene.noise_percent});
-    check.label = fmt::format("noise of a pixel: {}", variant.label);
+    check.label = fmt::format("noise, printed: {}", variant.label);
     check.value = 100.0 * noise;
     check.unit = "%";
     check.explanation =
-        "The standard error of a pixel over its light, the median of those that show a hundredth of white or more.";
+        "As it is printed: the standard error of a pixel's displayed value (sRGB), over white, rms over the frame.";
     return check;
 }
 

@@ -58,7 +58,7 @@ struct StrayScene {
     std::optional<MeasuredChart> chart;  // of which features are measured in the pictures
     bool has_streaks = false;            // are measured, of each variant's blades
     int growth_samples = 0;  // a pixel and pass, up to which the picture is watched as it grows; 0: it is not
-    std::optional<double> noise_percent;  // of a pixel, the median, at most
+    std::optional<double> noise_percent;  // of white, as it is printed, at most
     std::vector<StrayCheck> checks;
 };
 

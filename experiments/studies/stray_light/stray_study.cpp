@@ -23,7 +23,7 @@ findings::Subject subject_of(const StrayScene& scene, const StrayVariant& varian
         subject.facts.push_back({pass.pass + ", of the picture's light", percent(ratio(pass.light, all))});
     }
     if (const std::optional<double> noise = found.noise()) {
-        subject.facts.push_back({"noise of a pixel, the median", fmt::format("{:.2g} %", 100.0 * *noise)});
+        subject.facts.push_back({"noise, printed", fmt::format("{:.2g} %", 100.0 * *noise)});
     }
     if (found.streaks) {
         subject.facts.push_back(
