@@ -14,6 +14,7 @@
 #include "calibration/light/light_gradient.h"
 #include "calibration/light/vignetting.h"
 #include "calibration/measure/measure_bands.h"
+#include "calibration/measure/measure_lines.h"
 #include "calibration/measure/measure_sharpness.h"
 #include "calibration/measure/observe.h"
 #include "engine/base/input_error.h"
@@ -244,7 +245,10 @@ Profile measure(const MeasureInput& input) {
     const std::vector<ChartView> charts = charts_in(seen);
     const bool is_lit = std::ranges::any_of(seen.pictures, [](const auto& picture) { return !picture.light.empty(); });
     const bool is_sharp = !seen.sharpness.edges.empty() || !seen.sharpness.stars.empty();
-    if (charts.empty() && (looks_for_charts(seen) || !(is_lit || is_sharp))) {
+    const bool has_lines =
+        std::ranges::any_of(seen.pictures, [](const auto& picture) { return !picture.scene_lines.empty(); });
+    if (charts.empty() &&
+        (looks_for_charts(seen) || (shows_lines(input) && !has_lines) || !(is_lit || is_sharp || has_lines))) {
         throw none_usable(input, seen);
     }
     Profile profile;
@@ -260,17 +264,23 @@ Profile measure(const MeasureInput& input) {
     profile.pixel_pitch_um = input.pixel_pitch_um;
 
     Vec2d centre = middle_px(seen);
-    if (charts.empty()) {
+    if (has_lines) {
+        centre = measure_lines(profile, seen);
+    } else if (charts.empty()) {
         profile.not_measured[part::kGeometry] = shows_star(input)    ? "a Siemens star has but one point"
                                                 : shows_edges(input) ? "there is no chart"
                                                                      : "there are flat fields only";
     } else {
         centre = measure_geometry(profile, seen, input, charts);
     }
-    add_sharpness(profile, seen.sharpness, centre);
-    add_vignetting(profile, seen, centre);
-    add_light_gradients(profile, seen, centre);
-    add_chromatic_shifts(profile, seen, centre);
+    if (!has_lines || is_lit) {
+        add_vignetting(profile, seen, centre);
+    }
+    if (!has_lines) {
+        add_sharpness(profile, seen.sharpness, centre);
+        add_light_gradients(profile, seen, centre);
+        add_chromatic_shifts(profile, seen, centre);
+    }
     if (!charts.empty() && !profile.geometry && profile.curves.empty()) {
         throw InputError(profile.not_measured[part::kGeometry]);
     }

@@ -14,8 +14,8 @@
 namespace lensproof::calibration {
 
 /// `edges`: what is to be measured is the edges in `MeasureInput::edges`, or whatever edges there are; no chart is
-/// looked for.
-enum class PictureRole { chart, flat_field, edges };
+/// looked for. `lines`: what is straight in the scene.
+enum class PictureRole { chart, flat_field, edges, lines };
 
 /// A picture to measure. It is loaded when its turn comes and forgotten after, so a large set needs no large memory.
 struct Picture {
@@ -55,6 +55,8 @@ struct MeasureInput {
 /// were looked for. Charts that do not tell a camera (one that faces it), where no model was asked for, give what needs
 /// none: their distortion about the picture's middle (calibration/geometry/plane_distortion.h), chromatic shift,
 /// vignetting and sharpness.
+///
+/// Straight lines of scenes, which no chart is looked for in, give distortion (calibration/lines/line_distortion.h).
 ///
 /// A picture that cannot be loaded, is of another size or other channels than those before it, is the same as one
 /// before it, shows no chart, or shows it blurred, is left out; `pictures` in the profile says why. Vignetting comes

@@ -10,6 +10,7 @@
 #include "calibration/detection/detect.h"
 #include "calibration/detection/refine.h"
 #include "calibration/detection/working_copy.h"
+#include "calibration/lines/find_lines.h"
 #include "calibration/picture/picture_quality.h"
 #include "engine/base/hash.h"
 #include "engine/base/parallel.h"
@@ -168,7 +169,10 @@ std::string hash_of_pixels(const formats::Image& image) {
 }
 
 std::string role_name(PictureRole role) {
-    return role == PictureRole::chart ? "chart" : role == PictureRole::edges ? "edges" : "flat field";
+    return role == PictureRole::chart   ? "chart"
+           : role == PictureRole::edges ? "edges"
+           : role == PictureRole::lines ? "lines"
+                                        : "flat field";
 }
 
 // A message without the picture's name, which stands beside it.
@@ -220,6 +224,12 @@ void observe_picture(Look& look, const Picture& picture, const MeasureInput& inp
             observe_edges(look.sharpness, image, channel, picture.name, input.edges);
         }
         account.used = true;
+        return;
+    }
+    if (picture.role == PictureRole::lines) {
+        own.scene_lines = find_lines(image, reference_channel(image), picture.name);
+        account.used = !own.scene_lines.empty();
+        account.reason = account.used ? picture.remark : "no edge is a tenth of the diagonal long";
         return;
     }
     for (int channel = 0; channel < image.channel_count() && picture.use_light; ++channel) {
@@ -305,6 +315,10 @@ bool shows_edges(const MeasureInput& input) {
     return std::ranges::any_of(input.pictures, [](const Picture& p) { return p.role == PictureRole::edges; });
 }
 
+bool shows_lines(const MeasureInput& input) {
+    return std::ranges::any_of(input.pictures, [](const Picture& p) { return p.role == PictureRole::lines; });
+}
+
 bool looks_for_charts(const Observations& seen) {
     return std::ranges::any_of(seen.pictures, [](const auto& picture) { return picture.view.has_value(); });
 }
@@ -342,6 +356,7 @@ InputError none_usable(const MeasureInput& input, const Observations& seen) {
     const std::string what = looks_for_charts(seen) ? "no " + describe(input.chart) + " found in any"
                              : shows_star(input)    ? "no Siemens star measured in any"
                              : shows_edges(input)   ? "no edge measured in any"
+                             : shows_lines(input)   ? "no long edge found in any"
                                                     : "no flat field";
     std::string text =
         input.name + ": " + what + " of " + std::to_string(count) + (count == 1 ? " picture" : " pictures");

@@ -8,6 +8,7 @@
 #include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/detection/line_points.h"
 #include "calibration/light/light_samples.h"
+#include "calibration/lines/scene_line.h"
 #include "calibration/measure/measure.h"
 #include "calibration/measure/measure_sharpness.h"
 #include "engine/base/input_error.h"
@@ -22,6 +23,7 @@ struct PictureObservation {
     ChartView points;                                   // the features seen,
     std::vector<std::optional<Vec2d>> point_errors_px;  // their standard errors,
     std::vector<LinePoints> lines;                      // the points of lines,
+    std::vector<SceneLine> scene_lines;                 // where lines of the scene were looked for,
     std::string reference_channel;                      // the channel that geometry is measured in,
     std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;  // and by channel where it shows them
     std::map<std::string, LightGroup> light;  // by channel, of the chart's white or of a flat field
@@ -51,6 +53,9 @@ bool looks_for_charts(const Observations& seen);
 
 /// Whether any picture is to show edges without a chart.
 bool shows_edges(const MeasureInput& input);
+
+/// Whether any picture is to show straight lines of a scene.
+bool shows_lines(const MeasureInput& input);
 
 /// Whether the chart is a Siemens star, which has no points to measure a camera by.
 bool shows_star(const MeasureInput& input);

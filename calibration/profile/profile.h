@@ -13,6 +13,7 @@
 #include "calibration/geometry/planar_pose.h"
 #include "calibration/geometry/projection_uncertainty.h"
 #include "calibration/light/vignetting_models.h"
+#include "calibration/lines/scene_line.h"
 #include "calibration/picture/picture_account.h"
 #include "calibration/picture/picture_traits.h"
 #include "calibration/profile/profile_line.h"
@@ -112,6 +113,9 @@ struct Profile {
     std::map<std::string, std::vector<ProfileEdge>> sharpness;
     /// The Siemens stars measured, by channel (JSON key "siemens_stars", calibration/sharpness/profile_star.h).
     std::map<std::string, std::vector<ProfileStar>> siemens_stars;
+    /// Long edges of pictures without a chart, the straight ones `used` (JSON key "scene_lines",
+    /// calibration/lines/scene_line.h).
+    std::vector<SceneLine> scene_lines;
     /// Formulas for the vignetting of each channel, the one to choose first, and what they are held against (JSON keys
     /// "vignetting_models" and "shading", calibration/light/vignetting_json.h).
     std::map<std::string, std::vector<VignettingModel>> vignetting_models;

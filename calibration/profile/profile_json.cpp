@@ -161,6 +161,7 @@ void fields(JsonArchive& json, Profile& profile) {
         .added("terms", profile.terms)
         .optional("sharpness", profile.sharpness, pitch)
         .optional("siemens_stars", profile.siemens_stars, pitch)
+        .optional("scene_lines", profile.scene_lines)
         .optional("vignetting_models", profile.vignetting_models)
         .optional("shading", profile.shading)
         .field("not_measured", profile.not_measured)

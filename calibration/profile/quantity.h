@@ -84,6 +84,8 @@ inline constexpr ChannelText kSharpnessTerms{"sharpness_{}"};
 inline constexpr ChannelText kBestFocusTerms{"best_focus_{}"};
 /// Of charts that tell no camera (calibration/geometry/plane_distortion.h).
 inline constexpr ChannelText kPlaneDistortionTerms{"plane_distortion"};
+/// Of straight lines of a scene (calibration/lines/plumb_line.h).
+inline constexpr ChannelText kLineDistortionTerms{"line_distortion"};
 
 /// What a profile consists of, in Profile::not_measured.
 namespace part {

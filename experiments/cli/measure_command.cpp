@@ -25,7 +25,9 @@ void add_sharpness_input(calibration::MeasureInput& input, const MeasureOptions&
     std::vector<std::string> names;
     for (calibration::Picture& picture : input.pictures) {
         if (picture.role == calibration::PictureRole::chart) {
-            picture.role = options.edges.empty() ? calibration::PictureRole::chart : calibration::PictureRole::edges;
+            picture.role = options.lines           ? calibration::PictureRole::lines
+                           : options.edges.empty() ? calibration::PictureRole::chart
+                                                   : calibration::PictureRole::edges;
             names.push_back(picture.name);
         }
     }
@@ -60,6 +62,21 @@ const OptionCheck kTransferOption{
     },
     "CURVE"};
 
+/// Without a chart there is no camera to be held or freed.
+void check_lines(const MeasureOptions& options) {
+    const std::vector<std::pair<const char*, bool>> of_charts = {
+        {"--chart", !options.chart.empty()},        {"--edge", !options.edges.empty()},
+        {"--model", options.model != "auto"},       {"--aspect", options.aspect != "square"},
+        {"--board-shape", options.fit_board_shape}, {"--focal-length", options.focal_length_mm > 0.0},
+        {"--fix-centre", options.fix_centre},       {"--focus-positions", !options.focus_positions_mm.empty()}};
+    for (const auto& [name, is_given] : of_charts) {
+        if (is_given) {
+            throw InputError(
+                fmt::format("{}: given with --lines, which looks for no chart: expected one of them", name));
+        }
+    }
+}
+
 int run_measure(const MeasureOptions& options) {
     if (!options.output.empty() && !options.each) {
         check_output_name(options.output);
@@ -77,10 +94,14 @@ int run_measure(const MeasureOptions& options) {
         write_and_print(options, run_bands(options, source));
         return kDone;
     }
-    if (options.chart.empty() == options.edges.empty()) {
-        throw InputError("measure: expected --chart FILE, or --edge for pictures of edges without a chart");
+    if (options.lines) {
+        check_lines(options);
+    } else if (options.chart.empty() == options.edges.empty()) {
+        throw InputError(
+            "measure: expected --chart FILE, or of pictures without a chart --edge for sharpness or --lines for "
+            "distortion");
     }
-    const scene::Chart chart = options.edges.empty() ? chart_to_find(options.chart) : scene::Chart{};
+    const scene::Chart chart = options.chart.empty() ? scene::Chart{} : chart_to_find(options.chart);
     const std::vector<std::filesystem::path> pictures = pictures_named(options.images);
     if (options.each) {
         return measure_each(options, source, chart, pictures);
@@ -184,13 +205,16 @@ void add_measure_command(Program& program) {
             "all edges that are found")
         .takes_one_argument()
         .type_name("RECTANGLE");
+    command.add_flag("--lines", options->lines,
+                     "Instead of a chart: distortion from what is straight in the scene (buildings, frames, shelves)");
     command
         .add_option("--focus-positions", options->focus_positions_mm,
                     "Where the focus stood in each IMAGE, mm, for field curvature")
         .separated_by(',');
     command
-        .add_option("--plots", options->plots_folder,
-                    "Folder for edges.csv, maps of the sharpness over the frame and pictures with their edges marked")
+        .add_option(
+            "--plots", options->plots_folder,
+            "Folder for edges.csv, maps of the sharpness over the frame and pictures with their edges or lines marked")
         .type_name("DIR");
     command.add_flag("--each", options->each,
                      "Measure each picture by itself; -o and --plots are then folders, with a summary.csv in -o");

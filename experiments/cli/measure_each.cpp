@@ -92,6 +92,11 @@ void print_line(const OwnResult& own) {
         print("{}: left out: {}\n", own.image, own.reason);
         return;
     }
+    if (!own.profile->scene_lines.empty()) {
+        print("{}: {} straight lines\n", own.image,
+              std::ranges::count(own.profile->scene_lines, true, &calibration::SceneLine::used));
+        return;
+    }
     const auto [edges, mtf50] = median_sharpness(*own.profile);
     print("{}: {}\n", own.image,
           mtf50 ? fmt::format("MTF50 {:.4f} cycles/px (median of {} edges)", *mtf50, edges) : "no edge was measured");

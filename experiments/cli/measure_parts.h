@@ -28,6 +28,7 @@ struct MeasureOptions {
     bool fix_centre = false;
     bool no_self_test = false;
     std::vector<std::string> edges;  // rectangles, or one "auto"
+    bool lines = false;
     std::string plots_folder;
     bool each = false;
     std::vector<double> focus_positions_mm;
@@ -66,6 +67,14 @@ calibration::Profile run_bands(const MeasureOptions& options, const calibration:
 /// over the frame, and each picture with its edges marked; where there are none, says so on standard error.
 void write_measure_plots(const std::filesystem::path& folder, const calibration::Profile& profile,
                          const calibration::MeasureInput& input);
+
+/// What `write_measure_plots` writes of straight lines of a scene: the curves of the distortion, and each picture with
+/// its lines marked.
+void write_line_plots(const std::filesystem::path& folder, const calibration::Profile& profile,
+                      const calibration::MeasureInput& input);
+
+/// What straight lines of a scene told, as text on standard output.
+void print_lines(const calibration::Profile& profile);
 
 /// The profile as text on standard output.
 void print_profile(const calibration::Profile& profile);

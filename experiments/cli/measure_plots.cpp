@@ -86,6 +86,10 @@ const std::string& shown_channel(const calibration::Profile& profile) {
 
 void write_measure_plots(const std::filesystem::path& folder, const calibration::Profile& profile,
                          const calibration::MeasureInput& input) {
+    if (!profile.scene_lines.empty()) {
+        write_line_plots(folder, profile, input);
+        return;
+    }
     if (std::ranges::all_of(profile.sharpness, [](const auto& channel) { return channel.second.empty(); })) {
         print_message("lensproof: --plots: {} has no edges to draw: {}\n", profile.name,
                       why_not_measured(profile, calibration::part::kSharpness, "none was measured"));

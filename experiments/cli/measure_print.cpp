@@ -167,7 +167,11 @@ void print_profile(const calibration::Profile& profile) {
     if (profile.geometry && profile.geometry->choice) {
         print("chosen because: {}\n", profile.geometry->choice->why);
     }
+    print_lines(profile);
     print_curve(profile, kQuantities.distortion);
+    if (!profile.scene_lines.empty()) {
+        print_curve(profile, kQuantities.equidistant_distortion);
+    }
     for (const char channel : kQuantities.vignetting_ev.channels) {
         print_curve(profile, kQuantities.vignetting_ev, {&channel, 1});
     }
