@@ -24,7 +24,10 @@ struct Box {
     int height = 0;
     std::vector<double> values;
 
-    [[nodiscard]] double at(int x, int y) const { return values[static_cast<std::size_t>(y * width + x)]; }
+    [[nodiscard]] std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
+    [[nodiscard]] double at(int x, int y) const { return values[index(x, y)]; }
     /// Whether it shows what is about the light.
     [[nodiscard]] bool is_margin(int x, int y) const {
         const int across = std::max(1, width / 10);
@@ -118,7 +121,7 @@ class Light {
         const Eigen::Vector3d plane = plane_covariance_ * right;
         for (int y = 0; y < box_.height; ++y) {
             for (int x = 0; x < box_.width; ++x) {
-                box_.values[static_cast<std::size_t>(y * box_.width + x)] -= plane.dot(plane_terms(box_.place(x, y)));
+                box_.values[box_.index(x, y)] -= plane.dot(plane_terms(box_.place(x, y)));
             }
         }
     }

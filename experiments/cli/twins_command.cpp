@@ -2,7 +2,9 @@
 // what the lens makes of it, without an experiment's file: it writes one, and runs it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include "calibration/explain/lens_change.h"
@@ -42,9 +44,8 @@ std::string seen_from(const fs::path& folder, const fs::path& file) {
 
 std::string manifest_text(const TwinsOptions& options, const fs::path& folder, const std::vector<fs::path>& photos) {
     std::vector<std::string> names;
-    for (const fs::path& photo : photos) {
-        names.push_back(seen_from(folder, photo));
-    }
+    std::ranges::transform(photos, std::back_inserter(names),
+                           [&](const fs::path& photo) { return seen_from(folder, photo); });
     std::string text = fmt::format(
         "name = \"Photos\"\ncamera = {}\nlicence = \"not stated\"\nsource = \"given to the command twins\"\nchart = "
         "{}\n"
