@@ -29,8 +29,9 @@ struct Ellipse {
         const double s = std::sin(turn_deg * kDegree);
         int inside = 0;
         for (int i = 0; i < kPlaces * kPlaces; ++i) {
+            const int row = i / kPlaces;
             const double dx = x - 0.5 + (i % kPlaces + 0.5) / kPlaces - middle.x;
-            const double dy = y - 0.5 + (i / kPlaces + 0.5) / kPlaces - middle.y;
+            const double dy = y - 0.5 + (row + 0.5) / kPlaces - middle.y;
             inside += std::hypot((c * dx + s * dy) / longer, (c * dy - s * dx) / shorter) < 1.0 ? 1 : 0;
         }
         return static_cast<double>(inside) / (kPlaces * kPlaces);

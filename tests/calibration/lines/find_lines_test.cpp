@@ -81,14 +81,12 @@ TEST(FindLines, DistortionOfPicturesWithinItsIntervals) {
     for (unsigned seed = 0; seed < count; ++seed) {
         std::vector<FlatThing> things = random_rectangles(10, 0.4, 0.3, seed);
         Chance chance(seed + 77);
-        std::vector<FlatThing> discs;
         for (int i = 0; i < 3; ++i) {
-            discs.push_back({.centre = {chance(-0.35, 0.35), chance(-0.25, 0.25)},
-                             .half = {chance(0.05, 0.12), 0.0},
-                             .light = i % 2 == 0 ? 0.02 : 0.98,
-                             .is_disc = true});
+            things.push_back({.centre = {chance(-0.35, 0.35), chance(-0.25, 0.25)},
+                              .half = {chance(0.05, 0.12), 0.0},
+                              .light = i % 2 == 0 ? 0.02 : 0.98,
+                              .is_disc = true});
         }
-        things.insert(things.end(), discs.begin(), discs.end());
         std::vector<SceneLine> lines = find_lines(picture_of(rays(), things, 0.005, seed), 0, "p");
         try {
             const LineDistortion found = fit_line_distortion(lines, kWidth, kHeight);
@@ -124,7 +122,8 @@ double by_freed_chessboard(const std::vector<std::filesystem::path>& files, doub
             EXPECT_TRUE(cv::findChessboardCorners(photo, {9, 6}, seen.emplace_back()));
             cv::cornerSubPix(photo, seen.back(), {5, 5}, {-1, -1}, {cv::TermCriteria::COUNT, 100, 0.0});
             for (int k = 0; k < 54; ++k) {
-                board[i].emplace_back(30.0F * static_cast<float>(k % 9), 30.0F * static_cast<float>(k / 9), 0.0F);
+                const int row = k / 9;
+                board[i].emplace_back(30.0F * static_cast<float>(k % 9), 30.0F * static_cast<float>(row), 0.0F);
             }
         }
         std::pair<cv::Mat, cv::Mat> result;

@@ -90,7 +90,8 @@ inline PixelRays pixel_rays(const CameraModel& camera, int width, int height, in
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             for (int k = 0; k < samples * samples; ++k) {
-                const Vec2d pixel{x - 0.5 + (k % samples + 0.5) / samples, y - 0.5 + (k / samples + 0.5) / samples};
+                const int row = k / samples;
+                const Vec2d pixel{x - 0.5 + (k % samples + 0.5) / samples, y - 0.5 + (row + 0.5) / samples};
                 const Vec3d direction = unproject(camera, pixel).value();
                 rays.places.push_back({direction.x / direction.z, direction.y / direction.z});
             }
@@ -142,6 +143,7 @@ inline formats::Image picture_of(const PixelRays& rays, const std::vector<FlatTh
 inline std::vector<FlatThing> random_rectangles(int count, double reach_x, double reach_y, unsigned seed) {
     Chance chance(seed);
     std::vector<FlatThing> things;
+    things.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
         things.push_back({.centre = {chance(-reach_x, reach_x), chance(-reach_y, reach_y)},
                           .half = {chance(0.3, 0.6) * reach_x, chance(0.15, 0.35) * reach_x},

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -35,9 +37,7 @@ TEST(Varied, MakesATableOfEachCombinationTheLastKeyFastest) {
         "vary.camera.blades = 7\n");
     ASSERT_EQ(tables.size(), 6U);
     std::vector<std::string> names;
-    for (Varied& one : tables) {
-        names.push_back(one.table.text("name"));
-    }
+    std::ranges::transform(tables, std::back_inserter(names), [](Varied& one) { return one.table.text("name"); });
     EXPECT_EQ(names, (std::vector<std::string>{"tessar-7-4-pinhole", "tessar-7-4-thin_lens", "tessar-7-6-pinhole",
                                                "tessar-7-6-thin_lens", "tessar-7-8-pinhole", "tessar-7-8-thin_lens"}));
     TomlTable& last = tables.back().table;
