@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "calibration/detection/working_copy.h"
 #include "calibration/lines/line_distortion.h"
@@ -81,7 +82,8 @@ TEST(FindLines, DistortionOfPicturesWithinItsIntervals) {
     for (unsigned seed = 0; seed < count; ++seed) {
         std::vector<FlatThing> things = random_rectangles(10, 0.4, 0.3, seed);
         Chance chance(seed + 77);
-        for (int i = 0; i < 3; ++i) {
+        constexpr int kDiscs = 3;  // after the rectangles
+        for (int i = 0; i < kDiscs; ++i) {
             things.push_back({.centre = {chance(-0.35, 0.35), chance(-0.25, 0.25)},
                               .half = {chance(0.05, 0.12), 0.0},
                               .light = i % 2 == 0 ? 0.02 : 0.98,
@@ -97,7 +99,7 @@ TEST(FindLines, DistortionOfPicturesWithinItsIntervals) {
             continue;
         }
         for (const SceneLine& line : lines) {
-            for (const FlatThing& disc : discs) {
+            for (const FlatThing& disc : std::span(things).last<kDiscs>()) {
                 const auto on_rim = std::ranges::count_if(line.points_px, [&](const Vec2d& p) {
                     const Vec3d d = *unproject(small_lens(), p);
                     return std::abs(length(Vec2d{d.x / d.z, d.y / d.z} - disc.centre) - disc.half.x) < 0.002;
