@@ -9,6 +9,7 @@
 #include <optional>
 #include <variant>
 
+#include "calibration/detection/working_copy.h"
 #include "calibration/sharpness/find_edges.h"
 #include "engine/base/input_error.h"
 
@@ -34,11 +35,6 @@ LocalWarp local_warp(const Registration& registration, const formats::Image& a, 
     return {.at_px = mapped(at.x, at.y),
             .by_x = slope(mapped(at.x + kStep_px, at.y), mapped(at.x - kStep_px, at.y)),
             .by_y = slope(mapped(at.x, at.y + kStep_px), mapped(at.x, at.y - kStep_px))};
-}
-
-/// Green, or grey's one channel.
-int told_channel(const formats::Image& image) {
-    return std::max(0, formats::find_channel(image, "G"));
 }
 
 std::vector<EdgeRegion> regions_of(const formats::Image& a, int channel,
@@ -189,7 +185,7 @@ double relative(const Estimate& estimate) {
 
 SharpnessComparison compare_sharpness(const formats::Image& a, const formats::Image& b,
                                       const Registration& registration, const std::vector<PixelRectangle>& rectangles) {
-    const int channel = told_channel(a);
+    const int channel = reference_channel(a);
     SharpnessComparison found{.channel = a.channels[static_cast<std::size_t>(channel)]};
     for (const EdgeRegion& region : regions_of(a, channel, rectangles)) {
         if (std::optional<EdgePair> pair = measured_pair(a, b, registration, channel, region)) {
@@ -227,7 +223,7 @@ SpotPair compare_spots(const formats::Image& a, const formats::Image& b, const R
     const Estimate light_b = total_of(pair.b);
     pair.light_ev = {std::log2(light_b.value / (warp.area() * light_a.value)),
                      std::hypot(relative(light_a), relative(light_b)) / std::log(2.0)};
-    const int green = told_channel(a);
+    const int green = reference_channel(a);
     for (int c = 0; a.channel_count() > 1 && c < a.channel_count(); ++c) {
         const Estimate one = pair.a.colour_ev(c, green);
         const Estimate other = pair.b.colour_ev(c, green);

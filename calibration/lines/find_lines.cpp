@@ -4,10 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <utility>
 
+#include "calibration/detection/line_segments.h"
 #include "calibration/detection/working_copy.h"
 #include "calibration/lines/line_chains.h"
 #include "calibration/lines/trace_line.h"
@@ -15,13 +15,7 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kSearchedSide_px = 2400.0;  // larger pictures are searched in a copy of this size
-constexpr double kMostShared = 0.3;          // of a line's points, which another line has too
-
-struct FoundSegments {
-    std::vector<LineSegment> segments;  // in pixels of the whole picture
-    double scale = 1.0;                 // pixels of the picture per pixel that was searched
-};
+constexpr double kMostShared = 0.3;  // of a line's points, which another line has too
 
 // Turned so that the bright side is on the right of its way (y downwards, on the left).
 LineSegment bright_side_first(const cv::Mat& plane, const LineSegment& segment, double scale) {
@@ -34,31 +28,6 @@ LineSegment bright_side_first(const cv::Mat& plane, const LineSegment& segment, 
         difference += light_at(plane, at + (1.5 * scale) * across) - light_at(plane, at - (1.5 * scale) * across);
     }
     return difference >= 0.0 ? segment : LineSegment{segment.to, segment.from};
-}
-
-FoundSegments segments_in(const formats::Image& image, const cv::Mat& plane) {
-    cv::Mat copy = detector_copy(image);
-    if (copy.empty()) {
-        return {};
-    }
-    const double shrink = std::min(1.0, kSearchedSide_px / std::max(copy.cols, copy.rows));
-    if (shrink < 1.0) {
-        cv::resize(copy, copy, {}, shrink, shrink, cv::INTER_AREA);
-    }
-    std::vector<cv::Vec4f> found;
-    cv::createLineSegmentDetector(cv::LSD_REFINE_STD)->detect(copy, found);
-    FoundSegments result{.segments = {}, .scale = static_cast<double>(image.width) / copy.cols};
-    const double scale_y = static_cast<double>(image.height) / copy.rows;
-    for (const cv::Vec4f& line : found) {
-        const auto whole = [&](double x, double y) {
-            return Vec2d{(x + 0.5) * result.scale - 0.5, (y + 0.5) * scale_y - 0.5};
-        };
-        const LineSegment segment{whole(line[0], line[1]), whole(line[2], line[3])};
-        if (length_of(segment) > 0.0) {
-            result.segments.push_back(bright_side_first(plane, segment, result.scale));
-        }
-    }
-    return result;
 }
 
 // The places where lines of one way have points, to two pixels: the other side of a thin bar goes the other way.
@@ -111,10 +80,13 @@ std::vector<SceneLine> each_once(std::vector<SceneLine> lines) {
 
 std::vector<SceneLine> find_lines(const formats::Image& image, int channel, const std::string& name) {
     const cv::Mat plane = channel_plane(image, channel);
-    const FoundSegments found = segments_in(image, plane);
+    FoundSegments found = find_segments(image);
+    for (LineSegment& segment : found.segments) {
+        segment = bright_side_first(plane, segment, found.scale);
+    }
     const double shortest = kShortestLine * std::hypot(image.width, image.height);
     std::vector<SceneLine> lines;
-    for (const LineChain& chain : joined_segments(found.segments, found.scale)) {
+    for (const LineChain& chain : joined_segments(std::move(found.segments), found.scale)) {
         if (chord_of(chain) < 0.9 * shortest) {
             continue;
         }

@@ -21,15 +21,11 @@ double cross_of(const Vec2d& a, const Vec2d& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-double dot_of(const Vec2d& a, const Vec2d& b) {
-    return a.x * b.x + a.y * b.y;
-}
-
 // How badly `b` goes on where `a` ends; none where it does not.
 std::optional<double> cost_of_joining(const LineSegment& a, const LineSegment& b, double scale) {
     const Vec2d u = direction_of(a);
     const Vec2d v = direction_of(b);
-    const double turn = std::atan2(cross_of(u, v), dot_of(u, v));
+    const double turn = std::atan2(cross_of(u, v), dot(u, v));
     if (std::abs(turn) > kMostTurn_rad) {
         return std::nullopt;
     }
@@ -37,7 +33,7 @@ std::optional<double> cost_of_joining(const LineSegment& a, const LineSegment& b
     const Vec2d both = u + v;
     const double size = std::hypot(both.x, both.y);
     const Vec2d mean{both.x / size, both.y / size};
-    const double along = dot_of(gap, mean);
+    const double along = dot(gap, mean);
     const double longest = std::max(kLeastGap_px * scale, kGapOfLength * std::min(length_of(a), length_of(b)));
     if (along < -kMostOverlap_px * scale || along > longest) {
         return std::nullopt;
@@ -45,7 +41,7 @@ std::optional<double> cost_of_joining(const LineSegment& a, const LineSegment& b
     // A chord of a circle lies along the mean of its tangents; a tangent is that of its segment's middle.
     const Vec2d middles = 0.5 * (b.from + b.to) - 0.5 * (a.from + a.to);
     const double off = std::max(std::abs(cross_of(mean, gap)) - kOffCirclePart * std::max(along, 0.0),
-                                std::abs(cross_of(mean, middles)) - kOffCirclePart * std::abs(dot_of(mean, middles)));
+                                std::abs(cross_of(mean, middles)) - kOffCirclePart * std::abs(dot(mean, middles)));
     if (off > kOffCircle_px * scale) {
         return std::nullopt;
     }
@@ -69,16 +65,6 @@ std::optional<std::size_t> best_join(const std::vector<LineSegment>& segments, c
 }
 
 }  // namespace
-
-double length_of(const LineSegment& segment) {
-    const Vec2d span = segment.to - segment.from;
-    return std::hypot(span.x, span.y);
-}
-
-Vec2d direction_of(const LineSegment& segment) {
-    const double length = length_of(segment);
-    return {(segment.to.x - segment.from.x) / length, (segment.to.y - segment.from.y) / length};
-}
 
 double chord_of(const LineChain& chain) {
     return length_of({chain.front().from, chain.back().to});

@@ -2,18 +2,11 @@
 #pragma once
 #include <vector>
 
-#include "engine/base/vec.h"
+#include "calibration/detection/line_segments.h"
 
 namespace lensproof::calibration {
 
-/// A directed piece of an edge, px; the same side of all pieces is the bright one.
-struct LineSegment {
-    Vec2d from;
-    Vec2d to;
-};
-double length_of(const LineSegment& segment);
-Vec2d direction_of(const LineSegment& segment);
-
+/// Directed pieces of an edge, the same side of all being the bright one.
 using LineChain = std::vector<LineSegment>;
 double chord_of(const LineChain& chain);
 

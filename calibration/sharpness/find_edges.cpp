@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "calibration/detection/line_segments.h"
 #include "calibration/detection/working_copy.h"
 #include "engine/base/angle.h"
 
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kSearchLongSide_px = 2400.0;  // larger pictures are searched in a copy of this size
 constexpr double kLongestStretch_px = 96.0;
 constexpr double kShortestStretch_px = 24.0;
 constexpr double kEndMargin_px = 2.0;  // corners stay outside, and a tenth of the line
@@ -95,49 +94,25 @@ std::optional<Stretch> widened(const cv::Mat& plane, EdgeRegion region) {
     return std::nullopt;
 }
 
-// Line segments, x1, y1, x2, y2 in pixels of the whole picture.
-std::vector<cv::Vec4f> lines_in(const formats::Image& image) {
-    cv::Mat copy = detector_copy(image);
-    if (copy.empty()) {
-        return {};
-    }
-    const double shrink = std::min(1.0, kSearchLongSide_px / std::max(copy.cols, copy.rows));
-    if (shrink < 1.0) {
-        cv::resize(copy, copy, {}, shrink, shrink, cv::INTER_AREA);
-    }
-    std::vector<cv::Vec4f> lines;
-    cv::createLineSegmentDetector(cv::LSD_REFINE_STD)->detect(copy, lines);
-    const auto scale_x = static_cast<float>(image.width) / static_cast<float>(copy.cols);
-    const auto scale_y = static_cast<float>(image.height) / static_cast<float>(copy.rows);
-    for (cv::Vec4f& line : lines) {
-        for (int i = 0; i < 4; i += 2) {
-            line[i] = (line[i] + 0.5F) * scale_x - 0.5F;
-            line[i + 1] = (line[i + 1] + 0.5F) * scale_y - 0.5F;
-        }
-    }
-    return lines;
-}
-
 bool lies_along_pixels(const Vec2d& along) {
     const double eighth = std::remainder(std::atan2(along.y, along.x), kPi / 4);
     return std::abs(eighth) < kTiltFromAxes;
 }
 
-void add_stretches(const cv::Mat& plane, const cv::Vec4f& line, std::vector<Stretch>& stretches) {
-    const Vec2d span{static_cast<double>(line[2] - line[0]), static_cast<double>(line[3] - line[1])};
-    const double length = std::hypot(span.x, span.y);
+void add_stretches(const cv::Mat& plane, const LineSegment& line, std::vector<Stretch>& stretches) {
+    const double length = length_of(line);
     const double usable = length - 2.0 * (kEndMargin_px + 0.1 * length);
     if (usable < kShortestStretch_px) {
         return;
     }
-    const Vec2d along{span.x / length, span.y / length};
+    const Vec2d along = direction_of(line);
     if (lies_along_pixels(along)) {
         return;
     }
     const int count = static_cast<int>(std::ceil(usable / kLongestStretch_px));
     for (int i = 0; i < count; ++i) {
         const double at = 0.5 * (length - usable) + (i + 0.5) * usable / count;
-        const auto stretch = widened(plane, {.centre_px = {line[0] + at * along.x, line[1] + at * along.y},
+        const auto stretch = widened(plane, {.centre_px = line.from + at * along,
                                              .along = along,
                                              .half_length_px = 0.5 * usable / count,
                                              .half_width_px = kWidest_px});
@@ -168,7 +143,7 @@ double tone_contrast(const formats::Image& image, int channel, const EdgeRegion&
 std::vector<EdgeRegion> find_edges(const formats::Image& image, int channel) {
     const cv::Mat plane = channel_plane(image, channel);
     std::vector<Stretch> stretches;
-    for (const cv::Vec4f& line : lines_in(image)) {
+    for (const LineSegment& line : find_segments(image).segments) {
         add_stretches(plane, line, stretches);
     }
     std::ranges::stable_sort(stretches, std::greater<>(), &Stretch::merit);

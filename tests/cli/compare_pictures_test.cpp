@@ -142,7 +142,8 @@ formats::Image edge_and_lamp(double soft, double radius) {
     return image;
 }
 
-// The disc of a quarter more radius has the diameter that its moments say, and (5/4)² of the light.
+// A ramp twice as wide has half the frequencies. The disc of a quarter more radius has the diameter that its moments
+// say, and (5/4)² of the light.
 TEST(ComparePicturesCommand, TellsOfEdgesAndOfPatchesOfLight) {
     const Workplace place;
     formats::write_exr(edge_and_lamp(0.8, 12.0), place.path() / "a.exr");

@@ -5,42 +5,16 @@
 #include "engine/base/write_file.h"
 #include "tests/cli/program.h"
 #include "tests/complaint.h"
+#include "tests/tessar_photos.h"
 
 namespace lensproof::twins_command_test {
 
 namespace {
 
-constexpr const char* kChart = "kind = \"checkerboard\"\nsquares = [9, 6]\nsquare_mm = 180.0\n";
-
 /// Takes five photos of a chart through a Tessar, into out/images/camera.
 void take_photos(const Workplace& place) {
-    std::string text = R"(title = "photos"
-[render]
-samples_per_pixel = 32
-layers = 16
-strata_per_layer = 1
-[[simulations]]
-name = "camera"
-model = "brown-conrady"
-flat_field = false
-[simulations.camera]
-lens = "tessar"
-f_number = 11.0
-focus_distance_mm = 3000.0
-sensor_mm = [96.0, 72.0]
-pixels = [320, 240]
-shutter_s = 0.15
-iso = 100.0
-response = "camera"
-[simulations.chart]
-)";
-    text += kChart;
-    for (const char* tilt :
-         {"0.0, 0.0, 0.0", "35.0, 0.0, 0.0", "-35.0, 0.0, 5.0", "0.0, 35.0, -5.0", "0.0, -35.0, 3.0"}) {
-        text += std::string("[[simulations.views]]\ndistance_mm = 3000.0\ntilt_deg = [") + tilt + "]\n";
-    }
-    write_file(place.path() / "camera.toml", text);
-    write_file(place.path() / "chart.toml", std::string("[chart]\n") + kChart);
+    write_file(place.path() / "camera.toml", tessar_photos(320, 32));
+    write_file(place.path() / "chart.toml", std::string("[chart]\n") + kTessarChart);
     // What a camera's steps are is known before they are done.
     EXPECT_TRUE(says(place.run({"run", "camera.toml", "-o", "out", "--list"}).out,
                      "  camera, view 5 of 5\n  camera, measuring\n  camera, self-test\n  camera, tracing\n"));
@@ -66,7 +40,7 @@ TEST(TwinsCommand, WritesAnExperimentAndRunsIt) {
 
 TEST(TwinsCommand, RefusesWhatIsNotThere) {
     const Workplace place;
-    write_file(place.path() / "chart.toml", std::string("[chart]\n") + kChart);
+    write_file(place.path() / "chart.toml", std::string("[chart]\n") + kTessarChart);
     std::filesystem::create_directory(place.path() / "empty");
     expect_refused(place, {"twins", "empty", "--chart", "chart.toml", "--lens", "tessar"}, {"empty"});
     expect_refused(place, {"twins", "none.jpg", "--chart", "chart.toml", "--lens", "tessar"}, {"none.jpg"});

@@ -68,8 +68,7 @@ void fields(JsonArchive& json, ShownPhoto& photo) {
     json.field("width", photo.width).field("height", photo.height).packed("jpeg", photo.jpeg);
 }
 
-/// The width that lets a report of so many photos stay small: together they have twelve megapixels, and none is shown
-/// smaller than others are.
+/// That of each of so many photos, which together have twelve megapixels for a report to stay small.
 int shown_width(std::size_t photos) {
     constexpr double kPixels = 12e6;
     constexpr double kAspect = 1.5;

@@ -80,7 +80,7 @@ TEST(LightSpot, OfAnEvenEllipseHasItsCentreItsAxesAndItsColour) {
 }
 
 // Of 200 pictures 95 % intervals hold the truth, taken from a picture without noise, in 90 to 99 %: a binomial of 0.95
-// leaves that range once in 400.
+// leaves that range once in 640.
 TEST(LightSpot, StatesItsErrors) {
     const Ellipse ellipse;
     const formats::Image picture = ellipse.picture(80, 76);

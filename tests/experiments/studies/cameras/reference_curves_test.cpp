@@ -55,7 +55,8 @@ TEST(ReferenceCurves, OfAMakersCorrectionAreThoseOfItsWarp) {
     EXPECT_FALSE(found.curves.contains(kQuantities.chromatic_shift.key("R")));
 }
 
-// A prescription's own rays: the chief ray's distortion in green, between 0.55 and the d line to 0.02 %.
+// A prescription's own rays: the chief ray's distortion in green, which this lens has 0.018 % less at 500 nm than at
+// 600, against that of the d line.
 TEST(ReferenceCurves, OfAPrescriptionAreItsRays) {
     const calibration::Profile found = reference_curves(source_of("lens:nikkor-50"), camera(), 0.0);
     optics::Lens lens = formats::load_lens("nikkor-50");
@@ -72,13 +73,8 @@ TEST(ReferenceCurves, OfAPrescriptionAreItsRays) {
 // alone.
 TEST(ReferenceCurves, OfADatabaseAreItsPolynomials) {
     const std::string model = "Canon EF 50mm f/1.8 MkII";
-    calibration::PhotographedLens entry;
-    try {
-        entry = calibration::LensfunDatabase::of_system().find(
-            {.model = model, .crop_factor = 1.0, .focal_length_mm = 50.0});
-    } catch (const std::exception& error) {
-        GTEST_SKIP() << error.what();
-    }
+    const calibration::PhotographedLens entry =
+        calibration::LensfunDatabase::of_system().find({.model = model, .crop_factor = 1.0, .focal_length_mm = 50.0});
     const calibration::Profile found = reference_curves(source_of("lensfun:" + model), camera(), 0.0);
     const double radius = 0.5 * entry.half_diagonal_mm();
     const double height = radius / (0.5 * std::hypot(36.0, 24.0));

@@ -14,6 +14,7 @@
 #include "experiments/runner/experiment.h"
 #include "tests/calibration/synthetic.h"
 #include "tests/complaint.h"
+#include "tests/tessar_photos.h"
 #include "tests/test_folder.h"
 
 namespace lensproof::studies::twins_study_test {
@@ -32,34 +33,7 @@ class TwinsStudy : public testing::Test {
   protected:
     static void SetUpTestSuite() {
         folder_ = new TestFolder;
-        std::string text = R"(title = "photos"
-[render]
-samples_per_pixel = 64
-layers = 16
-strata_per_layer = 1
-[[simulations]]
-name = "camera"
-model = "brown-conrady"
-flat_field = false
-[simulations.camera]
-lens = "tessar"
-f_number = 11.0
-focus_distance_mm = 3000.0
-sensor_mm = [96.0, 72.0]
-pixels = [400, 300]
-shutter_s = 0.15
-iso = 100.0
-response = "camera"
-[simulations.chart]
-kind = "checkerboard"
-squares = [9, 6]
-square_mm = 180.0
-)";
-        for (const char* tilt :
-             {"0.0, 0.0, 0.0", "35.0, 0.0, 0.0", "-35.0, 0.0, 5.0", "0.0, 35.0, -5.0", "0.0, -35.0, 3.0"}) {
-            text += fmt::format("[[simulations.views]]\ndistance_mm = 3000.0\ntilt_deg = [{}]\n", tilt);
-        }
-        write_file(folder_->path() / "camera.toml", text);
+        write_file(folder_->path() / "camera.toml", tessar_photos(400, 64));
         const findings::Findings found = run(folder_->path() / "camera.toml");
         std::string photos;
         for (int i = 0; i < kPhotos; ++i) {
@@ -68,9 +42,8 @@ square_mm = 180.0
             photos += fmt::format("\"{}\", ", name);
         }
         write_file(folder_->path() / "manifest.toml",
-                   fmt::format("name = \"n\"\nlicence = \"l\"\nsource = \"s\"\nphotos = [{}]\n[chart]\n"
-                               "kind = \"checkerboard\"\nsquares = [9, 6]\nsquare_mm = 180.0\n",
-                               photos));
+                   fmt::format("name = \"n\"\nlicence = \"l\"\nsource = \"s\"\nphotos = [{}]\n[chart]\n{}", photos,
+                               kTessarChart));
     }
     static void TearDownTestSuite() {
         delete folder_;
