@@ -114,7 +114,13 @@ class PathWalk {
 
     void add_from_lights(const PathVertex& vertex, const std::array<double, PathSampler::kNumbers>& numbers,
                          const spectral::SpectralSample& throughput) {
-        const auto light = scene_.lights.sample(vertex.hit.point, path_, numbers[0], numbers[1], numbers[2]);
+        const auto light = scene_.lights.sample(
+            vertex.hit.point, path_, numbers[0], numbers[1], numbers[2], [&](const Vec3d& direction) -> double {
+                const Vec3d wi = vertex.frame.to_local(direction);
+                return vertex.is_consistent(direction, wi)
+                           ? scene::evaluate(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance)[0]
+                           : 0.0;
+            });
         if (!light) {
             return;
         }

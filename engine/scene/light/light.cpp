@@ -1,8 +1,11 @@
 #include "engine/scene/light/light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "engine/base/angle.h"
 #include "engine/base/basis.h"
@@ -38,6 +41,24 @@ std::optional<LightSample> sample_point(const LightAtPoint auto& light, const Ve
         .leaving_per_sample = 1.0 / (light.cone_sr() * distance2)};
 }
 
+/// The mean of a few points of a surface, and the squared distance of the farthest from it.
+std::pair<Vec3d, double> middle_of(const SurfaceSampler& surface) {
+    constexpr int kSide = 4;
+    std::array<Vec3d, std::size_t{kSide} * kSide> points;
+    Vec3d middle;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto across = static_cast<double>(i % kSide);
+        const auto down = static_cast<double>(i / kSide);
+        points[i] = surface.sample((across + 0.5) / kSide, (down + 0.5) / kSide).point;
+        middle = middle + (1.0 / points.size()) * points[i];
+    }
+    double farthest2 = 0.0;
+    for (const Vec3d& point : points) {
+        farthest2 = std::max(farthest2, dot(point - middle, point - middle));
+    }
+    return {middle, farthest2};
+}
+
 }  // namespace
 
 Lights::Lights(const SceneGeometry& scene, std::vector<LightSource> lights) : of_object_(scene.object_count(), -1) {
@@ -64,7 +85,17 @@ Lights::Lights(const SceneGeometry& scene, std::vector<LightSource> lights) : of
         if (const auto* sky = std::get_if<EnvironmentLight>(&light); sky != nullptr && map_ == nullptr) {
             map_ = sky->map.get();
         }
-        lights_.push_back({.light = std::move(light), .surface = std::move(surface)});
+        Entry entry{.light = std::move(light), .surface = std::move(surface)};
+        std::visit(Overloaded{[&](const AreaLight&) {
+                                  std::tie(entry.middle, entry.extent2_mm2) = middle_of(entry.surface->sampler());
+                              },
+                              [&](const LightAtPoint auto& point) { entry.middle = point.position; },
+                              [&](const SunLight& sun) { entry.direction = sun.towards; },
+                              [](const LightAtInfinity auto& /*all about*/) {}},
+                   entry.light);
+        const double per = entry.middle ? 4.0 * kPi * kSquareMetresPerSquareMm : cross_section;
+        entry.irradiance = entry.is_directed() && per > 0.0 ? powers.back() / per : 0.0;
+        lights_.push_back(std::move(entry));
     }
     power_ = std::accumulate(powers.begin(), powers.end(), 0.0);
     double sum = 0.0;
@@ -72,6 +103,7 @@ Lights::Lights(const SceneGeometry& scene, std::vector<LightSource> lights) : of
         // Lights without power in the grid's band are never drawn, unless there are no others.
         lights_[i].probability = power_ > 0.0 ? powers[i] / power_ : 1.0 / static_cast<double>(lights_.size());
         cumulative_.push_back(sum += lights_[i].probability);
+        directed_ += lights_[i].is_directed() ? lights_[i].probability : 0.0;
     }
 }
 
@@ -81,15 +113,46 @@ Lights::Chosen Lights::choose(double u) const {
     const std::size_t at = std::min(static_cast<std::size_t>(after - cumulative_.begin()), lights_.size() - 1);
     const double before = at > 0 ? cumulative_[at - 1] : 0.0;
     const double rest = (target - before) / (cumulative_[at] - before);
-    return {&lights_[at], std::clamp(rest, 0.0, 1.0 - 0x1p-53)};
+    return {&lights_[at], lights_[at].probability, std::clamp(rest, 0.0, 1.0 - 0x1p-53)};
 }
 
-std::optional<LightSample> Lights::sample(const Vec3d& point, const spectral::PathWavelengths& path, double u_light,
-                                          double u1, double u2) const {
-    if (is_empty()) {
-        return {};
+Lights::Entry::Seen Lights::Entry::seen_from(const Vec3d& point) const {
+    if (!middle) {
+        return {direction.value_or(Vec3d{}), irradiance};
     }
-    const Entry& entry = *choose(u_light).entry;
+    const Vec3d to = *middle - point;
+    const double distance2 = dot(to, to);
+    return distance2 > 0.0 ? Seen{normalized(to), irradiance / std::max(distance2, extent2_mm2)} : Seen{};
+}
+
+Lights::Chosen Lights::choose(double u, std::span<const double> weights) const {
+    constexpr double kByPower = 0.1;
+    Chosen chosen = choose(u);
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(sum > 0.0) || !chosen.entry->is_directed()) {
+        return chosen;
+    }
+    auto at = static_cast<std::size_t>(chosen.entry - lights_.data());
+    if (chosen.rest >= kByPower) {
+        double rest = (chosen.rest - kByPower) / (1.0 - kByPower) * sum;
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            if (weights[i] > 0.0) {
+                at = i;  // the last of them where rounding leaves a rest
+                if (rest < weights[i]) {
+                    break;
+                }
+            }
+            rest -= weights[i];
+        }
+    }
+    const Entry& entry = lights_[at];
+    return {.entry = &entry,
+            .probability = kByPower * entry.probability + (1.0 - kByPower) * directed_ * weights[at] / sum};
+}
+
+std::optional<LightSample> Lights::sample_of(const Chosen& chosen, const Vec3d& point,
+                                             const spectral::PathWavelengths& path, double u1, double u2) const {
+    const Entry& entry = *chosen.entry;
     std::optional<LightSample> found =
         std::visit(Overloaded{[&](const AreaLight& area) { return entry.surface->sample(area, point, path, u1, u2); },
                               [&](const LightAtPoint auto& light) { return sample_point(light, point, path); },
@@ -107,7 +170,7 @@ std::optional<LightSample> Lights::sample(const Vec3d& point, const spectral::Pa
                               }},
                    entry.light);
     if (found) {
-        found->value = scaled(found->value, 1.0 / entry.probability);
+        found->value = scaled(found->value, 1.0 / chosen.probability);
         found->pdf *= entry.probability;
     }
     return found;
@@ -152,7 +215,7 @@ Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
 }
 
 LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, double u1, double u2) const {
-    const auto [chosen, rest] = choose(u_light);
+    const auto [chosen, probability, rest] = choose(u_light);
     LightStart start;
     start.light = static_cast<std::uint32_t>(chosen - lights_.data());
     std::visit(Overloaded{[&, &surface = chosen->surface, &of_side = rest](const AreaLight& area) {
@@ -178,8 +241,8 @@ LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, 
                               start.pdf = drawn.pdf;
                           }},
                chosen->light);
-    start.value = scaled(start.value, 1.0 / chosen->probability);
-    start.pdf *= chosen->probability;
+    start.value = scaled(start.value, 1.0 / probability);
+    start.pdf *= probability;
     return start;
 }
 

@@ -1,8 +1,10 @@
 // engine/scene/light/light.h — the lights of a scene, and how paths find them from either end.
 #pragma once
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -38,7 +40,8 @@ concept LightAtInfinity = requires(const Light& light, const Vec3d& direction, c
     { light.irradiance() } -> std::same_as<double>;
 };
 
-/// All lights of a scene, each drawn as often as its fraction of the power that they send into the scene.
+/// All lights of a scene, each drawn as often as its fraction of the power that they send into the scene; by a surface
+/// point, where there are not too many, mostly as often as its fraction of what the point would pass on.
 class Lights {
   public:
     Lights() = default;
@@ -50,7 +53,26 @@ class Lights {
 
     /// Draws a light and a point of it as `point` sees them. Nothing where that light does not reach the point.
     [[nodiscard]] std::optional<LightSample> sample(const Vec3d& point, const spectral::PathWavelengths& path,
-                                                    double u_light, double u1, double u2) const;
+                                                    double u_light, double u1, double u2) const {
+        return is_empty() ? std::nullopt : sample_of(choose(u_light), point, path, u1, u2);
+    }
+    /// The same for a point of which `passes_on` tells how much (in any unit) it passes on of light from a direction
+    /// (world, unit length): what a lamp's mirror image in a wet street needs. The sample's pdfs, which only weigh
+    /// it against other ways to the light, are those of a choice by power.
+    template <class PassesOn>
+    [[nodiscard]] std::optional<LightSample> sample(const Vec3d& point, const spectral::PathWavelengths& path,
+                                                    double u_light, double u1, double u2,
+                                                    const PassesOn& passes_on) const {
+        if (lights_.size() < 2 || lights_.size() > kMostWeighed) {
+            return sample(point, path, u_light, u1, u2);
+        }
+        std::array<double, kMostWeighed> weights{};
+        for (std::size_t i = 0; i < lights_.size(); ++i) {
+            const auto [direction, irradiance] = lights_[i].seen_from(point);
+            weights[i] = irradiance > 0.0 ? irradiance * passes_on(direction) : 0.0;
+        }
+        return sample_of(choose(u_light, std::span(weights).first(lights_.size())), point, path, u1, u2);
+    }
 
     /// What a surface that a ray has met radiates towards where the ray comes from, and the pdf with which
     /// `sample` would have drawn that direction from `from`.
@@ -104,16 +126,36 @@ class Lights {
     [[nodiscard]] double power() const { return power_; }
 
   private:
+    static constexpr std::size_t kMostWeighed = 64;  // lights, of which each is asked for at every point
     struct Entry {
         LightSource light;
         std::optional<ShiningSurface> surface;  // of an area light
         double probability = 0.0;
+        std::optional<Vec3d> middle;     // none: at infinity
+        std::optional<Vec3d> direction;  // to one at infinity; none: near, or all about
+        double extent2_mm2 = 0.0;        // squared: from nearer than this it counts as from there
+        double irradiance = 0.0;         // of light from one direction, on what faces it; of a near one times mm²
+
+        /// By its middle, if nothing stands in the way. No irradiance: it is all about.
+        struct Seen {
+            Vec3d direction;
+            double irradiance = 0.0;
+        };
+        [[nodiscard]] Seen seen_from(const Vec3d& point) const;
+        [[nodiscard]] bool is_directed() const { return middle || direction; }
     };
     struct Chosen {
-        const Entry* entry;
-        double rest;  // of the number that chose it, uniform again
+        const Entry* entry = nullptr;
+        double probability = 0.0;
+        double rest = 0.0;  // of the number that chose it, uniform again
     };
     [[nodiscard]] Chosen choose(double u) const;
+    /// Nine times out of ten by these weights of lights that have a direction, else by power: none is left out for
+    /// being judged by its middle alone. Lights all about are drawn by power.
+    [[nodiscard]] Chosen choose(double u, std::span<const double> weights) const;
+    [[nodiscard]] std::optional<LightSample> sample_of(const Chosen& chosen, const Vec3d& point,
+                                                       const spectral::PathWavelengths& path, double u1,
+                                                       double u2) const;
     [[nodiscard]] Emission at_infinity(const Entry& entry, const Vec3d& direction, const MapPlace& ahead,
                                        const spectral::PathWavelengths& path) const;
 
@@ -126,6 +168,7 @@ class Lights {
     double radius_mm_ = 0.0;
     double crossing_pdf_ = 0.0;  // 1/mm²: of light paths from infinity over the disc in front of the scene
     double power_ = 0.0;
+    double directed_ = 0.0;  // share of lights that are not all about
 };
 
 }  // namespace lensproof::scene
