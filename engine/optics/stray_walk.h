@@ -27,6 +27,7 @@ enum class StrayEnd {
     film,      // on the sensor's plane
     body,      // out behind the last surface, and not towards the sensor
     absorbed,  // by a wall, or outside the first or last surface; or glass let nothing pass
+    wall,      // on the first wall that scatters it, where it was to be followed no farther
     lost       // through a gap in the table's walls, or still on its way after many thousands of events
 };
 
@@ -65,9 +66,32 @@ class StrayWalk {
 
     template <class Landed>
     StrayEnd follow(StrayLight& light, bool forward, Landed&& landed) {
-        constexpr int kMostEvents = 10000;
         cell_ = forward ? 0 : count_;
         target_ = forward ? 0 : count_ - 1;
+        return go_on(light, landed);
+    }
+
+    /// The same as far as the first wall that scatters: from there copies of the walk may go several ways.
+    template <class Landed>
+    StrayEnd follow_to_wall(StrayLight& light, bool forward, Landed&& landed) {
+        stops_at_wall_ = true;
+        return follow(light, forward, landed);
+    }
+
+    /// From the wall that `follow_to_wall` has come to.
+    template <class Landed>
+    StrayEnd leave_first_wall(StrayLight& light, Landed&& landed) {
+        stops_at_wall_ = false;
+        const std::optional<StrayEnd> end = leave_wall(light, wall_normal_, wall_finish_);
+        return end ? *end : go_on(light, landed);
+    }
+
+  private:
+    static constexpr int kAnySurface = -2;
+
+    template <class Landed>
+    StrayEnd go_on(StrayLight& light, Landed&& landed) {
+        constexpr int kMostEvents = 10000;
         for (int event = 0; event < kMostEvents; ++event) {
             if (cell_ == count_ && target_ == count_) {
                 if (!reach_film(light)) {
@@ -93,9 +117,6 @@ class StrayWalk {
         }
         return StrayEnd::lost;
     }
-
-  private:
-    static constexpr int kAnySurface = -2;
 
     struct GlassMeeting {
         int surface = 0;
@@ -192,6 +213,11 @@ class StrayWalk {
         if (!(finish.albedo > 0.0) || (light.walls > 0 && numbers_() >= finish.albedo)) {
             return StrayEnd::absorbed;
         }
+        if (stops_at_wall_) {
+            wall_normal_ = normal;
+            wall_finish_ = finish;
+            return StrayEnd::wall;
+        }
         if (light.walls == 0) {
             light.at_first_wall = light.weight * (1.0 - finish.albedo);
             light.weight *= finish.albedo;
@@ -246,6 +272,9 @@ class StrayWalk {
     int count_;
     int cell_ = 0;    // the space in front of surface `cell_`
     int target_ = 0;  // the surface that light from the one it left comes to next
+    bool stops_at_wall_ = false;
+    Vec3d wall_normal_;  // where it has stopped
+    WallFinish wall_finish_;
 };
 
 }  // namespace lensproof::optics

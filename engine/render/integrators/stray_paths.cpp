@@ -60,16 +60,33 @@ float StrayCameraPaths::irradiance(Vec2d pixel, const spectral::PathWavelengths&
     WalkNumbers walk_numbers(aim);
     optics::StrayWalk walk(lens, *barrel_, camera.settings().mirrors, walk_numbers);
     tile.count_rays(1);
-    if (walk.follow(light, false, [](const optics::StrayLight&) {}) != optics::StrayEnd::front ||
-        !counts(ways_, light)) {
-        return 0.0F;
+    const auto unheard = [](const optics::StrayLight&) {};
+    double brought = 0.0;  // radiance
+    const auto end_at = [&](optics::StrayEnd end, const optics::StrayLight& out) {
+        if (end == optics::StrayEnd::front && counts(ways_, out)) {
+            const PathRadiance found = trace_path(view_.scene(), camera.to_world(out.ray), path, view_.paths, numbers);
+            tile.count_rays(found.rays);
+            brought += out.weight * (found.radiance[0] + found.hero_radiance);
+        }
+    };
+    const optics::StrayEnd end =
+        ways_ == Ways::walls ? walk.follow_to_wall(light, false, unheard) : walk.follow(light, false, unheard);
+    if (end == optics::StrayEnd::wall) {
+        // Few ways from a wall lead out, so it pays to try several.
+        constexpr int kWaysFromWall = 8;
+        light.weight /= kWaysFromWall;
+        for (int way = 0; way < kWaysFromWall; ++way) {
+            optics::StrayWalk branch = walk;
+            optics::StrayLight onwards = light;
+            end_at(branch.leave_first_wall(onwards, unheard), onwards);
+        }
+        tile.count_rays(kWaysFromWall);
+    } else {
+        end_at(end, light);
     }
-    const PathRadiance found = trace_path(view_.scene(), camera.to_world(light.ray), path, view_.paths, numbers);
-    tile.count_rays(found.rays);
     const double cosine2 = to_disc.z * to_disc.z / distance2;
     const double steradians = disc_.area() * cosine2 / distance2;  // the film's cosine and the disc's
-    return static_cast<float>(across.weight * down.weight * steradians * light.weight) *
-           (found.radiance[0] + found.hero_radiance);
+    return static_cast<float>(across.weight * down.weight * steradians * brought);
 }
 
 }  // namespace lensproof::render

@@ -66,6 +66,7 @@ std::optional<Fate> FateEntrance::fate(const Ray<double>& ray, const optics::Tra
             return Fate::beside;
         case optics::StrayEnd::absorbed:
             return Fate::clipped;
+        case optics::StrayEnd::wall:  // where this walk does not stop
         case optics::StrayEnd::lost:
             break;
     }
