@@ -12,12 +12,12 @@
 namespace lensproof::render {
 
 PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
-                             const Integrator& integrator)
+                             PassIntegrators integrators)
     : setup_(setup),
       filter_(filter),
       cache_(cache),
-      integrator_(setup.chart ? &integrator_named("chart") : &integrator),
-      camera_(setup.camera, setup.spectral, filter, cache, integrator_->has_splats),
+      integrators_(setup.chart ? PassIntegrators{.usual = &integrator_named("chart")} : std::move(integrators)),
+      camera_(setup.camera, setup.spectral, filter, cache, integrators_.has_splats()),
       world_(make_world()) {
     if (!camera_.clamp_note().empty()) {
         remarks_.push_back(camera_.clamp_note());
@@ -42,7 +42,7 @@ View PreparedScene::view(std::uint64_t seed, bool has_features) const {
 }
 
 Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
-    return integrator_->render(view(seed, has_features));
+    return integrator().render(view(seed, has_features));
 }
 
 std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes, std::uint64_t seed, bool has_features,
@@ -52,7 +52,7 @@ std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes
     if (std::ranges::any_of(passes, [](const std::string& name) { return !pass_named(name).goes_straight; })) {
         straight.stray_camera = &stray_camera();
     }
-    return renders_of(passes, straight, *integrator_);
+    return renders_of(passes, straight, integrators_);
 }
 
 const Camera& PreparedScene::stray_camera() {
@@ -64,7 +64,7 @@ const Camera& PreparedScene::stray_camera() {
         CameraSettings settings = setup_.stray_camera.value_or(setup_.camera);
         settings.model = LensModel::exact;
         settings.sensor = setup_.camera.sensor;
-        stray_camera_.emplace(settings, setup_.spectral, filter_, cache_, integrator_->has_splats);
+        stray_camera_.emplace(settings, setup_.spectral, filter_, cache_, integrators_.has_splats());
     }
     return *stray_camera_;
 }

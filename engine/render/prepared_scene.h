@@ -17,11 +17,11 @@ namespace lensproof::render {
 /// Camera and world, ready for any number of renders. It stays where it was made: views refer to it.
 class PreparedScene {
   public:
-    /// Loads the lens and everything that the scene names. `integrator`: of a chart in even light there is but one.
+    /// Loads the lens and everything that the scene names. `integrators`: of a chart in even light there is but one.
     /// `cache`: for what is found by tracing the lens and for the uplift of RGB; the same pictures come from any.
     /// Throws InputError as `Camera` and `build_scene` do.
     PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
-                  const Integrator& integrator = integrator_named("camera"));
+                  PassIntegrators integrators = {});
     PreparedScene(const PreparedScene&) = delete;
     PreparedScene& operator=(const PreparedScene&) = delete;
 
@@ -39,7 +39,7 @@ class PreparedScene {
     [[nodiscard]] const Camera& camera() const { return camera_; }
     /// Of all that rays have met in cameras, in any render so far.
     [[nodiscard]] std::string camera_hash() const;
-    [[nodiscard]] const Integrator& integrator() const { return *integrator_; }
+    [[nodiscard]] const Integrator& integrator() const { return *integrators_.usual; }
 
     /// What was repaired or left out, and that wavelengths were clamped to the glasses' range: a sentence each.
     [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
@@ -55,7 +55,7 @@ class PreparedScene {
     SceneSetup setup_;
     PixelFilter filter_;
     Cache cache_;
-    const Integrator* integrator_;
+    PassIntegrators integrators_;
     Camera camera_;
     std::optional<Camera> stray_camera_;  // where it is another, once a pass has asked for it
     std::vector<std::string> remarks_;

@@ -182,8 +182,8 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
     }
     const render::PixelFilter filter = filter_of(setup.sensor, options);
     const auto scene = said_of_scene(options, [&] {
-        return std::make_unique<render::PreparedScene>(setup, filter, Cache::standard(),
-                                                       render::integrator_named(paths));
+        return std::make_unique<render::PreparedScene>(
+            setup, filter, Cache::standard(), render::PassIntegrators{.usual = &render::integrator_named(paths)});
     });
     for (const std::string& remark : scene->remarks()) {
         print_message("lensproof: {}\n", remark);

@@ -137,7 +137,7 @@ TEST(DiffractedLight, IsTakenFromTheImage) {
     const render::View view{.world = &world, .camera = &camera, .seed = 1, .paths = {}};
     const auto shares = [&](const std::vector<std::string>& names) {
         std::vector<double> found;
-        for (const render::Render& render : render::renders_of(names, view, render::integrator_named("camera"))) {
+        for (const render::Render& render : render::renders_of(names, view, {})) {
             found.push_back(render.film.light_share);
         }
         return found;

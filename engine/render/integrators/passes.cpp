@@ -88,7 +88,17 @@ const Pass& pass_named(const std::string& name) {
     return *found;
 }
 
-std::vector<Render> renders_of(const std::vector<std::string>& names, const View& view, const Integrator& integrator) {
+const Integrator& PassIntegrators::of(const std::string& pass) const {
+    const auto own = of_pass.find(pass);
+    return own == of_pass.end() ? *usual : *own->second;
+}
+
+bool PassIntegrators::has_splats() const {
+    return usual->has_splats || std::ranges::any_of(of_pass, [](const auto& own) { return own.second->has_splats; });
+}
+
+std::vector<Render> renders_of(const std::vector<std::string>& names, const View& view,
+                               const PassIntegrators& integrators) {
     const bool is_diffracted = std::ranges::find(names, "diffracted") != names.end();
     View stray = view;
     stray.camera = view.stray_camera != nullptr ? view.stray_camera : view.camera;
@@ -96,7 +106,7 @@ std::vector<Render> renders_of(const std::vector<std::string>& names, const View
     std::vector<Render> renders;
     for (const std::string& name : names) {
         const Pass& pass = pass_named(name);
-        renders.push_back(pass.render(pass.goes_straight ? view : stray, integrator));
+        renders.push_back(pass.render(pass.goes_straight ? view : stray, integrators.of(name)));
         renders.back().film.light_share = pass.goes_straight ? straight : 1.0;
     }
     double bytes = 0.0;

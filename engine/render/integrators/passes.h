@@ -1,5 +1,6 @@
 // engine/render/integrators/passes.h — the classes of light paths, each of which a pass renders.
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,11 +32,22 @@ struct Pass {
 
 const std::vector<Pass>& passes();
 
+/// What finds the paths that image: what finds lamps that are seen may be another than what finds what they light.
+struct PassIntegrators {
+    const Integrator* usual = &integrator_named("camera");
+    std::map<std::string, const Integrator*> of_pass = {};  // by its name, in place of the usual one
+
+    [[nodiscard]] const Integrator& of(const std::string& pass) const;
+    /// Whether one of them does.
+    [[nodiscard]] bool has_splats() const;
+};
+
 /// Passes that are to be added up: where "diffracted" is one of them, those that go straight through the stop are less
 /// by what its edges take. All others go through the view's stray camera. Throws InputError where that has none of a
 /// pass's light, and where their films together take more memory than may be (kMostFilmBytes), std::out_of_range as
 /// `pass_named`.
-std::vector<Render> renders_of(const std::vector<std::string>& names, const View& view, const Integrator& integrator);
+std::vector<Render> renders_of(const std::vector<std::string>& names, const View& view,
+                               const PassIntegrators& integrators);
 
 /// Throws std::out_of_range for a name that is none of them.
 const Pass& pass_named(const std::string& name);

@@ -165,7 +165,7 @@ class VariantSteps {
         return settings_.steps.step(kGrowth, growth_input(), [&] {
             progress_(name_of("loading"), 0.0);
             render::PreparedScene small(render::coarser(setup_, kGrowthShrinks, 1), render::PixelFilter{},
-                                        settings_.cache, render::integrator_named(scene_.paths));
+                                        settings_.cache, integrators());
             return picture_growth(small.render(scene_.passes, settings_.seed, false, !is_draft()),
                                   scene_.growth_samples, settings_.threads,
                                   [&](double done) { progress_(name_of("growth"), done); });
@@ -229,7 +229,9 @@ class VariantSteps {
         what["scene"] = variant_.stated;
         what["seed"] = settings_.seed;
         what["draft"] = is_draft();
-        what["paths"] = scene_.paths;
+        for (const auto& [pass, paths] : scene_.paths) {
+            what["paths"][pass] = paths;
+        }
         return {.settings = std::move(what), .files = files_};
     }
 
@@ -271,11 +273,19 @@ class VariantSteps {
         return fmt::format("{}, {}: {}", scene_.name, variant_.name, what);
     }
 
+    [[nodiscard]] render::PassIntegrators integrators() const {
+        render::PassIntegrators integrators;
+        for (const auto& [pass, paths] : scene_.paths) {
+            integrators.of_pass[pass] = &render::integrator_named(paths);
+        }
+        return integrators;
+    }
+
     render::PreparedScene& prepared() {
         if (!prepared_) {
             progress_(name_of("loading"), 0.0);
-            prepared_ = std::make_unique<render::PreparedScene>(setup_, render::PixelFilter{}, settings_.cache,
-                                                                render::integrator_named(scene_.paths));
+            prepared_ =
+                std::make_unique<render::PreparedScene>(setup_, render::PixelFilter{}, settings_.cache, integrators());
         }
         return *prepared_;
     }

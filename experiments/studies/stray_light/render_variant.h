@@ -51,8 +51,8 @@ struct VariantFindings {
 
     /// Of a pass, or of all together.
     [[nodiscard]] Estimate light(const std::string& pass) const;
-    /// Of all together as it is printed: the standard error of a pixel's displayed value (sRGB, white being 1), root mean
-    /// square over the frame. Nothing where a pass's is not known.
+    /// Of all together as it is printed: the standard error of a pixel's displayed value (sRGB, white being 1), root
+    /// mean square over the frame. Nothing where a pass's is not known.
     [[nodiscard]] std::optional<double> noise() const;
     /// Of the ghosts that the surface reflects, or of the others.
     [[nodiscard]] Estimate ghost_energy(int surface, bool is_involved) const;

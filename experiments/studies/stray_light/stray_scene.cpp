@@ -68,6 +68,22 @@ auto by_pass(TomlTable& table, const char* key, const std::vector<std::string>& 
     return found;
 }
 
+/// One integrator of all passes, or a table of them by passes' names.
+std::map<std::string, std::string> read_paths(TomlTable& table, std::vector<std::string> passes) {
+    std::erase_if(passes, [](const std::string& pass) { return !render::pass_named(pass).goes_straight; });
+    const auto read = [](TomlTable& paths, const std::string& key) {
+        return paths.choice(key, {"camera", "light", "both"});
+    };
+    if (!table.has("paths") || table.is_table("paths")) {
+        return by_pass(table, "paths", passes, read);
+    }
+    std::map<std::string, std::string> same;
+    for (const std::string& pass : passes) {
+        same[pass] = read(table, "paths");
+    }
+    return same;
+}
+
 std::vector<std::string> variant_names(const StrayScene& scene) {
     std::vector<std::string> names;
     std::ranges::transform(scene.variants, std::back_inserter(names), &StrayVariant::name);
@@ -139,7 +155,7 @@ StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
     if (scene.passes.empty()) {
         scene.passes = {"imaged", "direct", "ghosts"};
     }
-    scene.paths = table.has("paths") ? table.choice("paths", {"camera", "light", "both"}) : "camera";
+    scene.paths = read_paths(table, scene.passes);
     scene.samples_per_pixel =
         by_pass(table, "samples_per_pixel", scene.passes,
                 [](TomlTable& numbers, const std::string& pass) { return numbers.integer(pass, 1, 1 << 20); });

@@ -46,7 +46,7 @@ struct StrayScene {
     std::string title;
     std::filesystem::path file;  // the scene's
     std::vector<std::string> passes;
-    std::string paths;                             // the integrator of those that go straight through the lens
+    std::map<std::string, std::string> paths;      // of a pass that goes straight: its integrator; none: "camera"
     std::map<std::string, int> samples_per_pixel;  // of a pass, in place of the scene's
     std::map<std::string, double> brightening_ev;  // of a pass's picture
     std::vector<StrayVariant> variants;
