@@ -9,6 +9,7 @@
 
 #include "engine/base/angle.h"
 #include "engine/base/basis.h"
+#include "engine/base/infinity.h"
 #include "engine/base/overloaded.h"
 #include "engine/scene/bsdf/directions.h"
 
@@ -129,7 +130,7 @@ Lights::Chosen Lights::choose(double u, std::span<const double> weights) const {
     constexpr double kByPower = 0.1;
     Chosen chosen = choose(u);
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-    if (!(sum > 0.0) || !chosen.entry->is_directed()) {
+    if (!(sum > 0.0 && sum < kInfinity) || !chosen.entry->is_directed()) {
         return chosen;
     }
     auto at = static_cast<std::size_t>(chosen.entry - lights_.data());

@@ -28,7 +28,7 @@ struct LightSample {
     Vec3d end;                       // the path is free if nothing stands between the point and this
     spectral::SpectralSample value;  // radiance over pdf, or irradiance on a surface that faces a delta light; but for
     MapPlace place{};                // what a map's light has there, a factor (`light_of`)
-    double pdf = 0.0;                // per solid angle at the point, choice of the light included; 0 for a delta
+    double pdf = 0.0;                // per solid angle at the point, with the light drawn by power; 0 for a delta
     /// The pdf per etendue with which a light path would leave along this path, over that of this sample, 1/mm².
     double leaving_per_sample = 0.0;
 };

@@ -59,14 +59,16 @@ double displayed(double light) {
     return formats::linear_to_srgb(static_cast<float>(std::clamp(light, 0.0, 1.0)));
 }
 
-/// A variance is that of blocks of samples.
+/// None where camera paths brought light in a block of samples alone, of which a variance is: light paths have each
+/// their own.
 formats::Image errors_of(const render::Film& film, int samples) {
-    if (samples < 2 * static_cast<int>(render::kSamplesPerBlock)) {
-        return {};
-    }
+    const bool has_blocks = samples >= 2 * static_cast<int>(render::kSamplesPerBlock);
     formats::Image errors = formats::make_image(film.width(), film.height(), {"Y"});
     for (int y = 0; y < film.height(); ++y) {
         for (int x = 0; x < film.width(); ++x) {
+            if (!has_blocks && !(film.camera_estimate(x, y).rgb == Vec3d{})) {
+                return {};
+            }
             errors.at(x, y, 0) = static_cast<float>(error_of(film.estimate(x, y)));
         }
     }

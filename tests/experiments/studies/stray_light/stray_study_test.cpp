@@ -175,14 +175,16 @@ TEST_F(StrayStudy, FindsWhatTheVariantsChange) {
 // What a lamp sends straight to the film is the same from either end of its paths, within four standard errors.
 TEST_F(StrayStudy, LampsAreSeenFromEitherEndOfTheirPaths) {
     const auto direct = [&](const std::string& paths) {
-        findings::ExperimentFile experiment =
-            file("[[stray_light]]\nname = \"lamp\"\nscene = \"scene.toml\"\npasses = [\"direct\"]\npaths = \"" + paths +
-                 "\"\nvariants = [{ name = \"only\" }]\n");
+        findings::ExperimentFile experiment = file(
+            "[[stray_light]]\nname = \"lamp\"\nscene = \"scene.toml\"\npasses = [\"imaged\", \"direct\"]\npaths = " +
+            paths + "\nvariants = [{ name = \"only\" }]\n");
         const StrayScene read = read_stray_scene(experiment.top.tables("stray_light").at(0), experiment);
         return render_variant(read, read.variants[0], {}, kSilent);
     };
-    const VariantFindings camera = direct("camera");
-    const VariantFindings light = direct("light");
+    const VariantFindings camera = direct("\"camera\"");
+    const VariantFindings light = direct("{ direct = \"light\" }");
+    EXPECT_EQ(camera.light("imaged").value, light.light("imaged").value);
+    EXPECT_NE(camera.light("direct").value, light.light("direct").value);
     const Estimate ours = camera.light("direct");
     const Estimate theirs = light.light("direct");
     EXPECT_NEAR(ours.value, theirs.value, 4.0 * std::hypot(ours.standard_error, theirs.standard_error));
@@ -190,6 +192,9 @@ TEST_F(StrayStudy, LampsAreSeenFromEitherEndOfTheirPaths) {
     EXPECT_TRUE(camera.noise().has_value());
     EXPECT_TRUE(says(complaint("[[stray_light]]\nname = \"a\"\nscene = \"scene.toml\"\npaths = \"both ways\"\n"),
                      "paths: is \"both ways\", expected one of: camera, light, both"));
+    EXPECT_TRUE(
+        says(complaint("[[stray_light]]\nname = \"a\"\nscene = \"scene.toml\"\npaths = { ghosts = \"light\" }\n"),
+             "ghosts: is not a key that is known here"));
 }
 
 // One table stands for many variants, whose pictures stand side by side whatever their sizes, and whose light is drawn
