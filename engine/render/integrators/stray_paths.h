@@ -13,7 +13,8 @@ namespace lensproof::render {
 /// image do (path_tracer.h): they see a sky, a room or a lit wall for all that it sends. Light that comes straight from
 /// a lamp or a sun is left to light paths, which aim at the front from one however small.
 ///
-/// A path has one wavelength, since each leaves the lens another way. A TileRenderer.
+/// A path has one wavelength, since each leaves the lens another way. From the first wall it goes several ways, each
+/// with its share, since few lead out. A TileRenderer.
 class StrayCameraPaths {
   public:
     /// Throws as WalkEntrance.

@@ -1,7 +1,6 @@
 #include "engine/scene/light/light.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -45,13 +44,14 @@ std::optional<LightSample> sample_point(const LightAtPoint auto& light, const Ve
 /// The mean of a few points of a surface, and the squared distance of the farthest from it.
 std::pair<Vec3d, double> middle_of(const SurfaceSampler& surface) {
     constexpr int kSide = 4;
-    std::array<Vec3d, std::size_t{kSide} * kSide> points;
+    std::vector<Vec3d> points;
+    points.reserve(std::size_t{kSide} * kSide);
     Vec3d middle;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto across = static_cast<double>(i % kSide);
-        const auto down = static_cast<double>(i / kSide);
-        points[i] = surface.sample((across + 0.5) / kSide, (down + 0.5) / kSide).point;
-        middle = middle + (1.0 / points.size()) * points[i];
+    for (int row = 0; row < kSide; ++row) {
+        for (int column = 0; column < kSide; ++column) {
+            points.push_back(surface.sample((column + 0.5) / kSide, (row + 0.5) / kSide).point);
+            middle = middle + (1.0 / (kSide * kSide)) * points.back();
+        }
     }
     double farthest2 = 0.0;
     for (const Vec3d& point : points) {
