@@ -11,7 +11,7 @@
 #include "engine/scene/light/light.h"
 #include "tests/validation/small_scene.h"
 
-namespace lensproof::light_test {
+namespace lensproof::light_choice_test {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
 constexpr double kSky = 0.01;  // radiance
@@ -113,4 +113,4 @@ TEST(Lights, MoreOfThemThanAreWeighedLightAsMuch) {
     EXPECT_NEAR(found.variance, expected, 0.05 * expected);
 }
 
-}  // namespace lensproof::light_test
+}  // namespace lensproof::light_choice_test
