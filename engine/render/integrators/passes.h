@@ -32,7 +32,7 @@ struct Pass {
 
 const std::vector<Pass>& passes();
 
-/// What finds the paths that image: what finds lamps that are seen may be another than what finds what they light.
+/// By which integrator each pass is rendered that goes straight through the stop.
 struct PassIntegrators {
     const Integrator* usual = &integrator_named("camera");
     std::map<std::string, const Integrator*> of_pass = {};  // by its name, in place of the usual one

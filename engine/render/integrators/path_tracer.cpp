@@ -114,22 +114,13 @@ class PathWalk {
 
     void add_from_lights(const PathVertex& vertex, const std::array<double, PathSampler::kNumbers>& numbers,
                          const spectral::SpectralSample& throughput) {
-        const auto light = scene_.lights.sample(
-            vertex.hit.point, path_, numbers[0], numbers[1], numbers[2], [&](const Vec3d& direction) -> double {
-                const Vec3d wi = vertex.frame.to_local(direction);
-                return vertex.is_consistent(direction, wi)
-                           ? scene::evaluate(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance)[0]
-                           : 0.0;
-            });
+        const auto light =
+            scene_.lights.sample(vertex.hit.point, path_, numbers[0], numbers[1], numbers[2],
+                                 [&](const Vec3d& direction) { return vertex.scattering(direction)[0]; });
         if (!light) {
             return;
         }
-        const Vec3d wi = vertex.frame.to_local(light->direction);
-        if (!vertex.is_consistent(light->direction, wi)) {
-            return;
-        }
-        const spectral::SpectralSample scattering =
-            scene::evaluate(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance);
+        const spectral::SpectralSample scattering = vertex.scattering(light->direction);
         if (spectral::is_black(scattering)) {
             return;
         }
@@ -137,6 +128,7 @@ class PathWalk {
         if (scene::is_occluded(*scene_.geometry, scene::ray_origin(vertex.hit, light->direction), light->end)) {
             return;
         }
+        const Vec3d wi = vertex.frame.to_local(light->direction);
         const double to_light =
             light->pdf > 0.0 ? scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
         const PathTurn turn = turn_at(vertex, light->direction, wi, to_light);

@@ -49,6 +49,13 @@ struct PathVertex {
         return dot(world, hit.geometric_normal) * local.z > 0.0;
     }
 
+    /// What of light from a direction (world, unit length) goes back along the path, the cosine included.
+    [[nodiscard]] spectral::SpectralSample scattering(const Vec3d& from) const {
+        const Vec3d wi = frame.to_local(from);
+        return is_consistent(from, wi) ? scene::evaluate(bsdf, wo, wi, scene::Transport::radiance)
+                                       : spectral::SpectralSample();
+    }
+
     /// Both directions in the frame of a path that comes from `onwards`, whose local direction here is `wi`.
     struct Seen {
         Vec3d onwards;

@@ -78,7 +78,7 @@ class Lights {
     /// `sample` would have drawn that direction from `from`.
     struct Emission {
         spectral::SpectralSample radiance;
-        double pdf = 0.0;          // per solid angle, choice of the light included
+        double pdf = 0.0;          // per solid angle, with the light drawn by power
         double start_pdf = 0.0;    // with which `start` draws this point or direction (LightStart)
         double leaving_pdf = 0.0;  // per etendue, 1/(mm² sr): of `start` and `leave` together
     };

@@ -59,8 +59,8 @@ double displayed(double light) {
     return formats::linear_to_srgb(static_cast<float>(std::clamp(light, 0.0, 1.0)));
 }
 
-/// None where camera paths brought light in a block of samples alone, of which a variance is: light paths have each
-/// their own.
+/// None of camera paths' light in fewer than two blocks of samples, from whose means its variance is estimated; that of
+/// light paths' is from each.
 formats::Image errors_of(const render::Film& film, int samples) {
     const bool has_blocks = samples >= 2 * static_cast<int>(render::kSamplesPerBlock);
     formats::Image errors = formats::make_image(film.width(), film.height(), {"Y"});
