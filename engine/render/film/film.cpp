@@ -12,6 +12,7 @@ namespace {
 
 // Of what a pixel's sums consist: RGB, Σ n_b m_b² of each, the spectral layers, the features.
 constexpr std::size_t kLayers = 6;
+constexpr std::size_t kMostReached = 5;  // pixels of an axis, by a filter
 constexpr std::size_t kFeatureSums = 8;  // depth, coverage, albedo, normal
 
 std::size_t colour_sums(const FilmLayout& layout) {
@@ -68,27 +69,25 @@ bool is_finite(std::span<const float, 4> irradiance) {
     return std::ranges::all_of(irradiance, [](float value) { return std::isfinite(value); });
 }
 
-/// The pixels of one axis that a filter of this radius reaches from any of the coordinates that carry light.
+/// The pixels of one axis that a filter reaches from a coordinate, and f there.
 struct Reach {
     int first = 0;
-    int last = -1;
+    int count = 0;
+    std::array<double, kMostReached> weights{};
 };
 
-template <class Splat, class CoordinateOf>
-Reach reach_of(const Splat& splat, double radius, int pixels, const CoordinateOf& coordinate_of) {
-    double low = pixels + radius;
-    double high = -1.0 - radius;
-    for (std::size_t i = 0; i < splat.at_px.size(); ++i) {
-        // Compared before it is made an integer: a point far away has no such.
-        const double at = coordinate_of(splat.at_px[i]);
-        if (splat.irradiance[i] != 0.0F && reaches(at, pixels, radius)) {
-            low = std::min(low, at);
-            high = std::max(high, at);
+Reach reach_of(double at, int pixels, const PixelFilter& filter) {
+    const double radius = filter.radius_px();
+    Reach reach;
+    // Compared before it is made an integer: a point far away has no such.
+    if (reaches(at, pixels, radius)) {
+        reach.first = std::max(0, static_cast<int>(std::ceil(at - radius)));
+        const int last = std::min(pixels - 1, static_cast<int>(std::floor(at + radius)));
+        for (int pixel = reach.first; pixel <= last; ++pixel) {
+            reach.weights[static_cast<std::size_t>(reach.count++)] = filter(at - pixel);
         }
     }
-    return low > high ? Reach{}
-                      : Reach{std::max(0, static_cast<int>(std::ceil(low - radius))),
-                              std::min(pixels - 1, static_cast<int>(std::floor(high + radius)))};
+    return reach;
 }
 
 }  // namespace
@@ -247,31 +246,23 @@ void Film::add_light_path(std::span<const FilmTile::Splat> splats, std::vector<P
 }
 
 void Film::add_splat(const FilmTile::Splat& splat, std::vector<PathLight>& lit) {
-    const double radius = layout_.filter.radius_px();
-    const Reach across = reach_of(splat, radius, width(), [](Vec2d at) { return at.x; });
-    const Reach down = reach_of(splat, radius, height(), [](Vec2d at) { return at.y; });
     const std::size_t strata_per_layer = layout_.rgb_weights.size() / layout_.layer_nm.size();
-    for (int y = down.first; y <= down.last; ++y) {
-        for (int x = across.first; x <= across.last; ++x) {
-            Vec3d rgb;
-            double* sums = splat_sums_.data() + at(x, y) * splat_stride_;
-            bool is_reached = false;
-            for (std::size_t i = 0; i < splat.at_px.size(); ++i) {
-                const double weight = layout_.filter(splat.at_px[i].y - y) * layout_.filter(splat.at_px[i].x - x);
-                if (weight != 0.0 && splat.irradiance[i] != 0.0F) {
-                    const double irradiance = 0.25 * weight * static_cast<double>(splat.irradiance[i]);
-                    rgb = rgb + (layout_.band_nm * irradiance) * layout_.rgb_weights[splat.strata[i]];
-                    sums[kLayers + splat.strata[i] / strata_per_layer] += irradiance;
-                    is_reached = true;
-                }
-            }
-            if (is_reached) {
-                const auto before = std::ranges::find(lit, at(x, y), &PathLight::pixel);
-                if (before == lit.end()) {
-                    lit.push_back({at(x, y), rgb});
-                } else {
-                    before->rgb = before->rgb + rgb;
-                }
+    for (std::size_t i = 0; i < splat.at_px.size(); ++i) {
+        if (splat.irradiance[i] == 0.0F) {
+            continue;
+        }
+        const Reach across = reach_of(splat.at_px[i].x, width(), layout_.filter);
+        const Reach down = reach_of(splat.at_px[i].y, height(), layout_.filter);
+        for (int row = 0; row < down.count; ++row) {
+            for (int column = 0; column < across.count; ++column) {
+                const double weight =
+                    down.weights[static_cast<std::size_t>(row)] * across.weights[static_cast<std::size_t>(column)];
+                const std::size_t pixel = at(across.first + column, down.first + row);
+                const double irradiance = 0.25 * weight * static_cast<double>(splat.irradiance[i]);
+                splat_sums_[pixel * splat_stride_ + kLayers + splat.strata[i] / strata_per_layer] += irradiance;
+                const auto before = std::ranges::find(lit, pixel, &PathLight::pixel);
+                PathLight& light = before == lit.end() ? lit.emplace_back(PathLight{pixel, {}}) : *before;
+                light.rgb = light.rgb + (layout_.band_nm * irradiance) * layout_.rgb_weights[splat.strata[i]];
             }
         }
     }

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "engine/base/angle.h"
 #include "tests/engine/render/film/film_sample.h"
 
 namespace lensproof::render::film_test {
@@ -224,6 +227,37 @@ TEST(Film, FiltersCameraAndLightPathsAlike) {
             }
         }
     }
+}
+
+// Splats that are even over the film leave a pixel (∫ f²)² of the variance that the box leaves it: of the tent 4/9, of
+// e^(−2x²) − e^(−2r²), |x| < r, what its integrals make. Estimated from 1200 splats of each of 25 pixels, whose noise
+// is 0.6 % of it: within four times that of each.
+TEST(Film, WiderFiltersLeaveLessNoise) {
+    constexpr double kSide = 13.0;
+    const auto variance = [](const std::string& name) {
+        const Film film = with_splats(name, [](FilmTile& tile) {
+            for (std::uint32_t i = 0; i < 200000; ++i) {
+                tile.begin_light_path();
+                tile.splat(all_at(kSide * even_number(1, 0, i) - 2.5, kSide * even_number(1, 1, i) - 2.5), kStrata,
+                           kOnes);
+            }
+        });
+        double sum = 0.0;
+        for (int i = 0; i < 25; ++i) {
+            sum += film.light_estimate(2 + i % 5, 2 + i / 5).variance.x;
+        }
+        return sum;
+    };
+    const double box = variance("box");
+    EXPECT_NEAR(variance("tent") / box, 4.0 / 9.0, 0.024 * 4.0 / 9.0);
+    const double r = PixelFilter::named("gaussian").radius_px();
+    const double end = std::exp(-2.0 * r * r);
+    const double first = std::sqrt(0.5 * kPi) * std::erf(std::numbers::sqrt2 * r);
+    const double integral = first - 2.0 * r * end;
+    const double square = 0.5 * std::sqrt(kPi) * std::erf(2.0 * r) - 2.0 * end * first + 2.0 * r * end * end;
+    const double expected = std::pow(square / (integral * integral), 2.0);
+    EXPECT_NEAR(expected, 0.337, 0.001);
+    EXPECT_NEAR(variance("gaussian") / box, expected, 0.024 * expected);
 }
 
 // A path that brings 1, then 2 to one pixel brings it 3: of four paths, three of which bring it nothing, the mean is
