@@ -152,13 +152,28 @@ GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, 
         region.across *= 2;
         region.cell *= 0.5;
     }
-    for (const auto& [x, y] : region.cells) {
-        region.held.insert(GhostRegion::key(x, y));
-    }
+    region.held = HeldCells(region.cells);
     return region;
 }
 
 }  // namespace
+
+HeldCells::HeldCells(std::vector<GridCell> cells) {
+    std::ranges::sort(cells);
+    begins_.clear();
+    first_column_ = cells.empty() ? 0 : cells.front().x;
+    for (const auto& [x, y] : cells) {
+        const auto column = static_cast<std::size_t>(x - first_column_);
+        const bool goes_on = begins_.size() == column + 1 && stretches_.back().second == y - 1;
+        begins_.resize(column + 1, static_cast<std::uint32_t>(stretches_.size()));
+        if (goes_on) {
+            stretches_.back().second = y;
+        } else {
+            stretches_.emplace_back(y, y);
+        }
+    }
+    begins_.push_back(static_cast<std::uint32_t>(stretches_.size()));
+}
 
 GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path, double landing_share) {
     int first = kFirstGrid;

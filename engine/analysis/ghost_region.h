@@ -1,23 +1,51 @@
 // engine/analysis/ghost_region.h — the part of the front element from which a ghost reaches the sensor.
 #pragma once
-#include <unordered_set>
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/analysis/ghost_beam.h"
 
 namespace lensproof::analysis {
 
+/// A square of a grid.
+struct GridCell {
+    int x;
+    int y;
+    friend auto operator<=>(const GridCell&, const GridCell&) = default;
+};
+
+/// Cells, to be asked for by everyone who draws one: a column after the other, what it holds in stretches.
+class HeldCells {
+  public:
+    HeldCells() = default;
+    explicit HeldCells(std::vector<GridCell> cells);
+
+    [[nodiscard]] bool contains(int x, int y) const {
+        const auto column = static_cast<std::size_t>(std::int64_t{x} - first_column_);  // huge before the first
+        if (column >= begins_.size() - 1) {
+            return false;
+        }
+        const auto stretches = std::span(stretches_).subspan(begins_[column], begins_[column + 1] - begins_[column]);
+        return std::ranges::any_of(stretches, [y](const auto& of) { return of.first <= y && y <= of.second; });
+    }
+
+  private:
+    std::int64_t first_column_ = 0;
+    std::vector<std::uint32_t> begins_ = {0};     // of each column's stretches, and the end of the last
+    std::vector<std::pair<int, int>> stretches_;  // first and last
+};
+
 /// Squares of a grid over a FrontBeam's square.
 struct GhostRegion {
-    struct Cell {
-        int x;
-        int y;
-    };
+    using Cell = GridCell;
     int across = 1;     // cells along a side of the whole
     double cell = 0.0;  // side, mm
     Vec2d corner;
     std::vector<Cell> cells;
-    std::unordered_set<std::uint64_t> held;  // the same, to be asked for
+    HeldCells held;  // the same
     int search_rays = 0;
 
     static std::uint64_t key(int x, int y) {
@@ -25,8 +53,8 @@ struct GhostRegion {
     }
     [[nodiscard]] double area() const { return static_cast<double>(cells.size()) * cell * cell; }
     [[nodiscard]] bool contains(Vec2d offset) const {
-        return held.contains(
-            key(static_cast<int>((offset.x - corner.x) / cell), static_cast<int>((offset.y - corner.y) / cell)));
+        return held.contains(static_cast<int>((offset.x - corner.x) / cell),
+                             static_cast<int>((offset.y - corner.y) / cell));
     }
 };
 

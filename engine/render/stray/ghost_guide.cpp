@@ -101,8 +101,8 @@ std::optional<GhostGuide::Known> GhostGuide::Known::deserialized(std::string_vie
         for (auto& [x, y] : region.cells) {
             take(x);
             take(y);
-            region.held.insert(analysis::GhostRegion::key(x, y));
         }
+        region.held = analysis::HeldCells(region.cells);
     }
     return is_whole && bytes.empty() ? std::optional(std::move(known)) : std::nullopt;
 }

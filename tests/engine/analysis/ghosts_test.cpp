@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "engine/analysis/ghost_orders.h"
 #include "engine/base/angle.h"
@@ -25,6 +27,30 @@ GhostSettings settings_for(const optics::Lens& lens, double source_deg) {
             .image_radius = image_radius(lens, kWavelength).value(),
             .sampling = {},
             .threads = 1};
+}
+
+// Cells here and there, some in stretches: held are these and no others.
+TEST(HeldCells, HoldWhatTheyWereGiven) {
+    std::mt19937 random(3);
+    std::uniform_int_distribution<int> place(-6, 6);
+    std::set<std::pair<int, int>> given;
+    std::vector<GridCell> cells;
+    for (int i = 0; i < 60; ++i) {
+        const GridCell cell{2 * place(random), place(random)};
+        if (given.emplace(cell.x, cell.y).second) {
+            cells.push_back(cell);
+        }
+    }
+    const HeldCells held(cells);
+    for (int x = -20; x <= 20; ++x) {
+        for (int y = -10; y <= 10; ++y) {
+            EXPECT_EQ(held.contains(x, y), given.contains({x, y})) << x << " " << y;
+        }
+    }
+    EXPECT_FALSE(held.contains(std::numeric_limits<int>::max(), 0));
+    EXPECT_FALSE(held.contains(std::numeric_limits<int>::min(), 0));
+    EXPECT_FALSE(HeldCells().contains(0, 0));
+    EXPECT_FALSE(HeldCells(std::vector<GridCell>{}).contains(0, 0));
 }
 
 /// Two singlets about a stop, f/4 or so.
