@@ -32,6 +32,21 @@ const TraceKernels<T>& kernels_of(std::optional<SimdLevel> level) {
 }  // namespace
 
 template <class T>
+KernelLens<T> kernel_lens(const SpectralLens<T>& lens) {
+    const std::vector<TraceSurface<T>>& surfaces = lens.at().front().surfaces;
+    return {.surfaces = surfaces.data(),
+            .indices = lens.indices().data(),
+            .specials = lens.at().front().specials.data(),
+            .lens = &lens,
+            .count = static_cast<int>(surfaces.size()),
+            .is_monochromatic = lens.wavelengths() == 1,
+            .absorbs = lens.absorbs()};
+}
+
+template KernelLens<float> kernel_lens(const SpectralLens<float>&);
+template KernelLens<double> kernel_lens(const SpectralLens<double>&);
+
+template <class T>
 T lane_mask_transmittance(const SpectralLens<T>& lens, int surface, T x, T y) {
     const TraceLens<T>& any = lens.at().front();
     const TraceSurface<T>& stop = any.surfaces[static_cast<std::size_t>(surface)];
@@ -67,16 +82,8 @@ template double lane_coated_transmittance(const SpectralLens<double>&, int, int,
 
 template <Direction direction, class T>
 void trace_columns(const SpectralLens<T>& lens, const RayColumns<T>& rays, const BatchSettings& settings) {
-    const std::vector<TraceSurface<T>>& surfaces = lens.at().front().surfaces;
-    const KernelLens<T> plain_lens{.surfaces = surfaces.data(),
-                                   .indices = lens.indices().data(),
-                                   .specials = lens.at().front().specials.data(),
-                                   .lens = &lens,
-                                   .count = static_cast<int>(surfaces.size()),
-                                   .is_monochromatic = lens.wavelengths() == 1,
-                                   .absorbs = lens.absorbs()};
     const auto& loops = kernels_of<T>(settings.level)[static_cast<std::size_t>(direction)];
-    loops[static_cast<std::size_t>(settings.carry)](plain_lens, rays, settings.rims == Rims::clip);
+    loops[static_cast<std::size_t>(settings.carry)](kernel_lens(lens), rays, settings.rims == Rims::clip);
 }
 
 template <Direction direction, class T>

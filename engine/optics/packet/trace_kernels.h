@@ -19,6 +19,9 @@ struct KernelLens {
     bool absorbs = false;
 };
 
+template <class T>
+KernelLens<T> kernel_lens(const SpectralLens<T>& lens);
+
 /// `mask_transmittance`, `coated_transmittance` and `fading` of one ray, and its thin element. Not inline, so that they
 /// are compiled for any machine.
 template <class T>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/angle.h"
+#include "engine/optics/packet/ghost_lanes.h"
 
 namespace lensproof::render {
 
@@ -52,12 +53,11 @@ std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceB
 
 Entry GhostEntrance::followed(Entry entry, const Ray<double>& ray, const optics::GhostPath& ghost,
                               const spectral::PathWavelengths& path) const {
+    const optics::GhostLanes traced = optics::trace_ghost_lanes(front_.lens(), path.index, ghost, ray, mirrors_);
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
-        const optics::TraceLens<double>& lens = front_.lens().at(path.index[i]);
-        const optics::TracedRay<double> traced = optics::trace_ghost(lens, ghost, ray, mirrors_);
-        if (traced.status == optics::RayStatus::ok && traced.ray.direction.z > 0.0) {
-            entry.at_px[i] = front_.film_px(traced.ray, lens);
-            entry.weight[i] = traced.transmittance;
+        if (traced.arrives[i] && traced.ray[i].direction.z > 0.0) {
+            entry.at_px[i] = front_.film_px(traced.ray[i], front_.lens().at(path.index[i]));
+            entry.weight[i] = traced.transmittance[i];
         }
     }
     return entry;

@@ -1,0 +1,126 @@
+// The wavelengths of a ray along a ghost, side by side, against each by itself: the same fate, and the same bits.
+#include "engine/optics/packet/ghost_lanes.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "engine/base/file.h"
+#include "engine/base/write_file.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "tests/test_folder.h"
+
+namespace lensproof::optics::ghost_lanes_test {
+
+/// Ghosts of two reflections, some of four, and some that the sensor takes part in.
+std::vector<GhostPath> some_paths(int surfaces) {
+    std::vector<GhostPath> paths;
+    for (int a = 1; a < surfaces; ++a) {
+        for (int b = 0; b < a; ++b) {
+            paths.push_back({a, b});
+            if ((a + b) % 3 == 0) {
+                paths.push_back({a, b, std::min(b + 2, surfaces - 1), b});
+            }
+        }
+        paths.push_back({surfaces, a});
+    }
+    std::erase_if(paths, [&](const GhostPath& path) { return !path_fault(path, surfaces).empty(); });
+    return paths;
+}
+
+struct Fates {
+    int arrived = 0;
+    int ended = 0;
+    int parted = 0;  // some of the wavelengths alone arrive
+};
+
+/// Rays towards the front from all sides along every ghost, at wavelengths far apart.
+Fates compare(const Lens& lens, const SpectralLens<double>& at, double steepest) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    const StrayMirrors<double> mirrors{.sensor = 0.3, .blades = 0.1};
+    Fates fates;
+    for (const GhostPath& path : some_paths(static_cast<int>(lens.surfaces.size()))) {
+        for (int i = 0; i < 40; ++i) {
+            const double angle = steepest * unit(random);
+            const Vec3d direction = normalized(Vec3d{0.1 * unit(random), std::sin(angle), std::cos(angle)});
+            const double reach = 0.8 * lens.surfaces.front().semi_diameter;
+            const Ray<double> ray{Vec3d{reach * unit(random), reach * unit(random), 0.0} - 40.0 * direction, direction};
+            const std::array<std::uint16_t, 4> wavelengths{0, 1, 2, static_cast<std::uint16_t>(i % 3)};
+            for (const SimdLevel level : available_simd_levels()) {
+                const GhostLanes together = trace_ghost_lanes(at, wavelengths, path, ray, mirrors, level);
+                int arrived = 0;
+                for (std::size_t lane = 0; lane < kGhostLanes; ++lane) {
+                    const TracedRay<double> alone = trace_ghost(at.at(wavelengths[lane]), path, ray, mirrors);
+                    EXPECT_EQ(together.arrives[lane], alone.status == RayStatus::ok) << simd_name(level);
+                    if (together.arrives[lane] && alone.status == RayStatus::ok) {
+                        EXPECT_EQ(together.ray[lane].origin, alone.ray.origin) << simd_name(level);
+                        EXPECT_EQ(together.ray[lane].direction, alone.ray.direction) << simd_name(level);
+                        EXPECT_EQ(together.transmittance[lane], alone.transmittance) << simd_name(level);
+                        ++arrived;
+                    }
+                }
+                fates.arrived += arrived;
+                fates.ended += 4 - arrived;
+                fates.parted += arrived % 4 != 0 ? 1 : 0;
+            }
+        }
+    }
+    return fates;
+}
+
+SpectralLens<double> at_three(const Lens& lens) {
+    return at_wavelengths<double>(lens, {400.0, 550.0, 700.0});
+}
+
+/// A file with the Tessar and more in it.
+Lens tessar_with(const std::string& more) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "tessar_with.toml";
+    write_file(file, read_file(formats::find_lens_file("tessar")) + more);
+    return formats::load_lens(file.string());
+}
+
+TEST(GhostLanes, HaveTheBitsOfTheScalar) {
+    Fates seen;
+    for (const char* name : {"tessar", "petzval", "muller-fisheye", "double-gauss-tronnier"}) {
+        const Lens lens = formats::load_lens(name);
+        const Fates fates = compare(lens, at_three(lens), name[0] == 'm' ? 1.5 : 0.5);
+        EXPECT_GT(fates.arrived, 50) << name;
+        seen = {seen.arrived + fates.arrived, seen.ended + fates.ended, seen.parted + fates.parted};
+    }
+    EXPECT_GT(seen.arrived, 1000);
+    EXPECT_GT(seen.ended, 1000);
+    EXPECT_GT(seen.parted, 50);
+}
+
+// Blades, which reflect too, coatings, and groups that are turned and displaced.
+TEST(GhostLanes, PassWhateverSurfacesHave) {
+    for (const Lens& lens :
+         {tessar_with("[stop]\nblades = 6\nrotation_deg = 10\n"),
+          tessar_with("[[groups]]\nsurfaces = [3, 6]\ntilt_deg = [1, -2, 0]\ndecentre_mm = [0.3, 0.2]\n"),
+          formats::load_lens("tessar", {.coatings = {"broadband,1=v-coat"}})}) {
+        const SpectralLens<double> at = at_three(lens);
+        ASSERT_FALSE(at.at(0).specials.empty());
+        EXPECT_GT(compare(lens, at, 0.4).arrived, 300);
+    }
+}
+
+// Aspheric, displaced, and of glass that absorbs one colour.
+TEST(GhostLanes, PassShapesAndGlassThatAbsorbs) {
+    const Lens lens = formats::load_lens("tessar");
+    std::vector<TraceLens<double>> at = at_three(lens).at();
+    for (TraceLens<double>& one : at) {
+        SpecialSurface<double> special;
+        special.has_shape = true;
+        special.shape = {.curvature = one.surfaces[2].curvature, .conic = -0.5, .asphere = {0.0, 1e-6}, .terms = 2};
+        special.vertex = {0.0, 0.3};
+        one.specials.push_back(special);
+        one.surfaces[2].special = 0;
+    }
+    at[1].attenuation.assign(lens.surfaces.size() + 1, 0.02);
+    EXPECT_GT(compare(lens, SpectralLens<double>(at), 0.4).arrived, 300);
+}
+
+}  // namespace lensproof::optics::ghost_lanes_test
