@@ -12,9 +12,10 @@
 namespace lensproof::render {
 
 PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
-                             PassIntegrators integrators)
+                             PassIntegrators integrators, const std::optional<PixelFilter>& stray_filter)
     : setup_(setup),
       filter_(filter),
+      stray_filter_(stray_filter.value_or(filter)),
       cache_(cache),
       integrators_(setup.chart ? PassIntegrators{.usual = &integrator_named("chart")} : std::move(integrators)),
       camera_(setup.camera, setup.spectral, filter, cache, integrators_.has_splats()),
@@ -38,7 +39,8 @@ View PreparedScene::view(std::uint64_t seed, bool has_features) const {
             .camera = &camera_,
             .seed = seed,
             .has_features = has_features,
-            .paths = {.max_bounces = setup_.max_bounces}};
+            .paths = {.max_bounces = setup_.max_bounces},
+            .diffracted_from_airy = setup_.diffracted_from_airy};
 }
 
 Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
@@ -57,14 +59,15 @@ std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes
 
 const Camera& PreparedScene::stray_camera() {
     const bool has_lens = camera_.lens().has_value();
-    if (setup_.camera.model == LensModel::exact || !has_lens) {
+    const bool is_exact = setup_.camera.model == LensModel::exact;
+    if (!has_lens || (is_exact && stray_filter_.name() == filter_.name())) {
         return camera_;
     }
     if (!stray_camera_) {
-        CameraSettings settings = setup_.stray_camera.value_or(setup_.camera);
+        CameraSettings settings = is_exact ? setup_.camera : setup_.stray_camera.value_or(setup_.camera);
         settings.model = LensModel::exact;
         settings.sensor = setup_.camera.sensor;
-        stray_camera_.emplace(settings, setup_.spectral, filter_, cache_, integrators_.has_splats());
+        stray_camera_.emplace(settings, setup_.spectral, stray_filter_, cache_, integrators_.has_splats());
     }
     return *stray_camera_;
 }
@@ -77,6 +80,9 @@ std::map<std::string, std::string> PreparedScene::metadata() const {
     std::map<std::string, std::string> metadata = camera_.metadata();
     if (std::holds_alternative<scene::Scene>(world_)) {
         metadata["lensproof:maxBounces"] = fmt::format("{}", setup_.max_bounces);
+        if (setup_.diffracted_from_airy != kFirstDarkRing) {
+            metadata["lensproof:diffractedFromAiry"] = fmt::format("{}", setup_.diffracted_from_airy);
+        }
     }
     return metadata;
 }

@@ -19,9 +19,10 @@ class PreparedScene {
   public:
     /// Loads the lens and everything that the scene names. `integrators`: of a chart in even light there is but one.
     /// `cache`: for what is found by tracing the lens and for the uplift of RGB; the same pictures come from any.
+    /// `stray_filter`: of passes that do not go straight, in place of `filter`.
     /// Throws InputError as `Camera` and `build_scene` do.
     PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
-                  PassIntegrators integrators = {});
+                  PassIntegrators integrators = {}, const std::optional<PixelFilter>& stray_filter = {});
     PreparedScene(const PreparedScene&) = delete;
     PreparedScene& operator=(const PreparedScene&) = delete;
 
@@ -54,6 +55,7 @@ class PreparedScene {
 
     SceneSetup setup_;
     PixelFilter filter_;
+    PixelFilter stray_filter_;
     Cache cache_;
     PassIntegrators integrators_;
     Camera camera_;

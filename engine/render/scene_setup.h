@@ -28,6 +28,7 @@ struct SceneSetup {
     int samples_per_pixel = 64;
     std::optional<RawSensor> sensor;  // the electronics behind the film, where a raw file is wanted
     int max_bounces = 16;             // scatterings on a path between camera and light; 0: lights alone are seen
+    double diffracted_from_airy = kFirstDarkRing;  // deflections on the film, λN, from which light counts as diffracted
 };
 
 /// Reads a scene file, as engine/scene/README.md documents it: [camera], [[materials]], [[objects]], [[lights]],

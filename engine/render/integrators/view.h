@@ -32,6 +32,7 @@ struct View {
     /// Ghosts are searched for where they enter, which takes seconds for a lens; else at once, with more noise.
     bool guides_ghosts = true;
     PathSettings paths;
+    double diffracted_from_airy = kFirstDarkRing;  // DiffractionSettings
 
     [[nodiscard]] const scene::Scene& scene() const { return std::get<scene::Scene>(*world); }
     [[nodiscard]] const EvenChart& chart() const { return std::get<EvenChart>(*world); }

@@ -167,7 +167,7 @@ class VariantSteps {
         return settings_.steps.step(kGrowth, growth_input(), [&] {
             progress_(name_of("loading"), 0.0);
             render::PreparedScene small(render::coarser(setup_, kGrowthShrinks, 1), render::PixelFilter{},
-                                        settings_.cache, integrators());
+                                        settings_.cache, integrators(), scene_.stray_filter);
             return picture_growth(small.render(scene_.passes, settings_.seed, false, !is_draft()),
                                   scene_.growth_samples, settings_.threads,
                                   [&](double done) { progress_(name_of("growth"), done); });
@@ -231,6 +231,7 @@ class VariantSteps {
         what["scene"] = variant_.stated;
         what["seed"] = settings_.seed;
         what["draft"] = is_draft();
+        what["stray_filter"] = scene_.stray_filter.name();
         for (const auto& [pass, paths] : scene_.paths) {
             what["paths"][pass] = paths;
         }
@@ -286,8 +287,8 @@ class VariantSteps {
     render::PreparedScene& prepared() {
         if (!prepared_) {
             progress_(name_of("loading"), 0.0);
-            prepared_ =
-                std::make_unique<render::PreparedScene>(setup_, render::PixelFilter{}, settings_.cache, integrators());
+            prepared_ = std::make_unique<render::PreparedScene>(setup_, render::PixelFilter{}, settings_.cache,
+                                                                integrators(), scene_.stray_filter);
         }
         return *prepared_;
     }

@@ -156,6 +156,10 @@ StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
         scene.passes = {"imaged", "direct", "ghosts"};
     }
     scene.paths = read_paths(table, scene.passes);
+    if (table.has("stray_filter")) {
+        scene.stray_filter =
+            render::PixelFilter::named(table.choice("stray_filter", render::PixelFilter::known_names()));
+    }
     scene.samples_per_pixel =
         by_pass(table, "samples_per_pixel", scene.passes,
                 [](TomlTable& numbers, const std::string& pass) { return numbers.integer(pass, 1, 1 << 20); });

@@ -47,6 +47,7 @@ struct StrayScene {
     std::filesystem::path file;  // the scene's
     std::vector<std::string> passes;
     std::map<std::string, std::string> paths;      // of a pass that goes straight: its integrator; none: "camera"
+    render::PixelFilter stray_filter;              // of passes that do not go straight
     std::map<std::string, int> samples_per_pixel;  // of a pass, in place of the scene's
     std::map<std::string, double> brightening_ev;  // of a pass's picture
     std::vector<StrayVariant> variants;

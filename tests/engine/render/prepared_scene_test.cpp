@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/angle.h"
 #include "engine/render/film/film_image.h"
 #include "tests/complaint.h"
 #include "tests/test_folder.h"
@@ -13,8 +14,9 @@
 namespace lensproof::render::prepared_scene_test {
 namespace {
 
-/// A sun beside the picture and nothing else: all that reaches the film has gone astray. `camera`: lines of its table.
-SceneSetup under_a_sun(const std::string& camera) {
+/// A sun beside the picture and nothing else: all that reaches the film has gone astray. `camera`, `render`: lines of
+/// these tables.
+SceneSetup under_a_sun(const std::string& camera, const std::string& render = {}) {
     return parse_scene_setup(camera + R"(
 f_number = 5.6
 focus_distance_mm = inf
@@ -26,7 +28,7 @@ shutter_s = 0.01
 iso = 100
 response = "luminance"
 [render]
-layers = 4
+)" + render + R"(layers = 4
 strata_per_layer = 1
 [[lights]]
 kind = "sun"
@@ -37,8 +39,9 @@ illuminance_lx = 1e5
 }
 
 /// The picture of its ghosts.
-std::vector<float> astray(const std::string& camera, const Cache& cache) {
-    PreparedScene scene(under_a_sun(camera), PixelFilter{}, cache);
+std::vector<float> astray(const std::string& camera, const Cache& cache, const PixelFilter& filter = {},
+                          const std::optional<PixelFilter>& stray_filter = {}) {
+    PreparedScene scene(under_a_sun(camera), filter, cache, {}, stray_filter);
     return film_rgb(render_film(scene.render({"ghosts"}, 1, false).front(), {.first = 0, .end = 64}, 1)).pixels;
 }
 
@@ -71,6 +74,21 @@ TEST(PreparedScene, StrayLightIsOnTheFilmOfTheImage) {
     EXPECT_EQ(renders.back().film.height, renders.front().film.height);
 }
 
+// A filter of its own makes of stray light what it makes of it as everyone's, the same paths and the same bits, and
+// leaves all other light to theirs.
+TEST(PreparedScene, StrayLightHasAFilterOfItsOwn) {
+    const TestFolder folder;
+    const Cache cache(folder.path());
+    const std::string camera = "[camera]\nlens = \"tessar\"\n";
+    const PixelFilter box;
+    const PixelFilter gaussian = PixelFilter::named("gaussian");
+    const std::vector<float> own = astray(camera, cache, box, gaussian);
+    EXPECT_EQ(own, astray(camera, cache, gaussian));
+    EXPECT_NE(own, astray(camera, cache));
+    PreparedScene scene(under_a_sun(camera), box, cache, {}, gaussian);
+    EXPECT_TRUE(scene.render({"imaged", "ghosts"}, 1, false, false).front().film.filter.is_box());
+}
+
 // Where ghosts are searched for decides how noisy they are, and nothing else: both ways gather the same light, within
 // three of their errors, which are small beside it.
 TEST(PreparedScene, GhostsAreTheSameWithoutASearch) {
@@ -96,13 +114,15 @@ TEST(PreparedScene, GhostsAreTheSameWithoutASearch) {
 
 // What the edges of the stop turn aside is missing where light goes straight, whatever model brings it there.
 TEST(PreparedScene, WhatIsDiffractedIsMissingInAnyModelsImage) {
-    const auto straight_share = [](const std::string& model) {
-        PreparedScene scene(under_a_sun("[camera]\nlens = \"tessar\"\n" + model), PixelFilter{}, Cache());
+    const auto straight_share = [](const std::string& model, const std::string& render = {}) {
+        PreparedScene scene(under_a_sun("[camera]\nlens = \"tessar\"\n" + model, render), PixelFilter{}, Cache());
         const std::vector<Render> renders = scene.render({"imaged", "diffracted"}, 1, false);
         return renders.front().film.light_share;
     };
     const double exact = straight_share("");
     EXPECT_LT(exact, 1.0);
+    // Of a circle 2/(π² x) are beyond x λN (DiffractedLight.LeavesTheRestToTheImage).
+    EXPECT_NEAR(straight_share("", "diffracted_from_airy = 5.0\n"), 1.0 - 2.0 / (kPi * kPi * 5.0), 1e-12);
     EXPECT_EQ(straight_share("model = \"thin-lens\"\n"), exact);
 }
 

@@ -114,12 +114,18 @@ TEST_F(StrayStudy, ReadsVariantsOverItsScene) {
     EXPECT_EQ(read.variants[1].setup.camera.f_number, 4.0);
     EXPECT_EQ(read.variants[2].label, "half of the light");
     EXPECT_EQ(read.columns, 3);
+    EXPECT_TRUE(read.stray_filter.is_box());
     EXPECT_TRUE(says(complaint("[[stray_light]]\nname = \"a\"\nscene = \"scene.toml\"\nvariants = [\n"
                                "{ name = \"b\", scene.camera.f_numbre = 3.0 }]\n"),
                      "experiment.toml:5: "));
     EXPECT_TRUE(says(complaint("[[stray_light]]\nname = \"a\"\nscene = \"no.toml\"\nvariants = []\n"), "no.toml"));
     EXPECT_TRUE(says(complaint("[[stray_light]]\nname = \"a\"\nscene = \"scene.toml\"\nvariants = []\n"),
                      "variants: has 0 tables, expected 1 to 100"));
+    const std::string filtered =
+        "[[stray_light]]\nname = \"a\"\nscene = \"scene.toml\"\nvariants = [{ name = \"b\" }]\n";
+    findings::ExperimentFile experiment = file(filtered + "stray_filter = \"gaussian\"\n");
+    EXPECT_EQ(read_stray_scene(experiment.top.tables("stray_light").at(0), experiment).stray_filter.name(), "gaussian");
+    EXPECT_TRUE(says(complaint(filtered + "stray_filter = \"fir\"\n"), "expected one of: box, tent, gaussian"));
     const std::string table = kTable;
     EXPECT_TRUE(says(complaint(table + "[[stray_light.checks]]\nlight = \"barrel\"\nof = \"one\"\nat_most = 1\n"),
                      "light: is \"barrel\", expected one of: imaged, direct, ghosts, picture"));
