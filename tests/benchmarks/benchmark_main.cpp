@@ -39,6 +39,7 @@ constexpr Ratio kRatios[] = {
     {"dispersive / plain frosted glass", "bsdf/frosted-prism/evaluate", "bsdf/frosted-glass/evaluate"},
     {"lossless / brushed metal, evaluate", "bsdf/lossless-metal/evaluate", "bsdf/brushed-metal/evaluate"},
     {"texture: picture / constant", "texture/picture", "texture/constant"},
+    {"a ghost's four rays: alone / in lanes", "ghosts/ray/alone", "ghosts/ray/lanes"},
     {"discs / corners, refinement", "refine/disc-grid", "refine/checkerboard"},
 };
 

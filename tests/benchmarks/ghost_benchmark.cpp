@@ -9,8 +9,10 @@
 
 #include "engine/analysis/ghost_orders.h"
 #include "engine/analysis/ghost_pictures.h"
+#include "engine/analysis/ghost_region.h"
 #include "engine/base/angle.h"
 #include "engine/formats/prescription/load_lens.h"
+#include "engine/optics/packet/ghost_lanes.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -156,9 +158,56 @@ void ghost_flare(benchmark::State& state, const std::string& name) {
     state.counters["times_as_fast"] = most_rays * a_ray / by_beams;
 }
 
+/// A ray along a ghost at four wavelengths, from the ghosts' own entrances over the front; `trace` returns how many
+/// arrive.
+template <class Trace>
+void ghost_rays(benchmark::State& state, const Trace& trace) {
+    const optics::Lens lens = formats::load_lens("double-gauss-tronnier");
+    const auto at = optics::at_wavelengths<double>(lens, {450.0, 525.0, 600.0, 675.0});
+    const analysis::GhostSettings settings{.reference_wavelength_nm = kReferenceNm,
+                                           .wavelengths_nm = {},
+                                           .source_angle = 10.0 * kDegree,
+                                           .mirrors = {},
+                                           .image_radius = analysis::image_radius(lens, kReferenceNm).value(),
+                                           .sampling = {},
+                                           .threads = 1};
+    const analysis::GhostScene scene = analysis::ghost_scene(lens, settings, kReferenceNm);
+    std::vector<std::pair<optics::GhostPath, Ray<double>>> rays;
+    for (const optics::GhostPath& path : analysis::ghosts_of_two(scene)) {
+        const analysis::GhostRegion region = analysis::ghost_region(scene, path);
+        for (std::size_t i = 0; i < region.cells.size(); i += 1 + region.cells.size() / 20) {
+            const auto [x, y] = region.cells[i];
+            rays.emplace_back(path, scene.beam.ray(region.corner + region.cell * Vec2d{x + 0.5, y + 0.5}));
+        }
+    }
+    std::size_t next = 0;
+    int arrived = 0;
+    for (auto _ : state) {
+        const auto& [path, ray] = rays[next++ % rays.size()];
+        arrived += trace(at, path, ray);
+    }
+    benchmark::DoNotOptimize(arrived);
+}
+
+int one_by_one(const optics::SpectralLens<double>& at, const optics::GhostPath& path, const Ray<double>& ray) {
+    int arrived = 0;
+    for (const optics::TraceLens<double>& lens : at.at()) {
+        arrived += optics::trace_ghost(lens, path, ray).status == optics::RayStatus::ok ? 1 : 0;
+    }
+    return arrived;
+}
+
+int side_by_side(const optics::SpectralLens<double>& at, const optics::GhostPath& path, const Ray<double>& ray) {
+    constexpr std::array<std::uint16_t, 4> kWavelengths = {0, 1, 2, 3};
+    return static_cast<int>(
+        std::ranges::count(optics::trace_ghost_lanes(at, kWavelengths, path, ray, {}).arrives, true));
+}
+
 }  // namespace
 
 void register_ghost_benchmarks() {
+    benchmark::RegisterBenchmark("ghosts/ray/alone", [](benchmark::State& state) { ghost_rays(state, one_by_one); });
+    benchmark::RegisterBenchmark("ghosts/ray/lanes", [](benchmark::State& state) { ghost_rays(state, side_by_side); });
     const std::string lens = "double-gauss-angenieux";
     benchmark::RegisterBenchmark(("ghosts/" + lens).c_str(), ghost_flare, lens)->Unit(benchmark::kMillisecond);
 }
