@@ -159,7 +159,7 @@ GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, 
 }  // namespace
 
 HeldCells::HeldCells(std::vector<GridCell> cells) {
-    std::ranges::sort(cells);
+    std::ranges::sort(cells, {}, [](const GridCell& cell) { return std::pair(cell.x, cell.y); });
     begins_.clear();
     first_column_ = cells.empty() ? 0 : cells.front().x;
     for (const auto& [x, y] : cells) {

@@ -14,7 +14,6 @@ namespace lensproof::analysis {
 struct GridCell {
     int x;
     int y;
-    friend auto operator<=>(const GridCell&, const GridCell&) = default;
 };
 
 /// Cells, to be asked for by everyone who draws one: a column after the other, what it holds in stretches.

@@ -162,9 +162,10 @@ PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const
 }
 
 PathTracer::PathTracer(const View& view, Combination combination)
-    : view_(view),
-      is_weighed_(combination == Combination::weighed),
-      paths_(*view.camera, view.seed, is_weighed_ ? PathCarry::wavelengths_and_pdfs : PathCarry::wavelengths) {
+    : paths_(*view.camera, view.seed,
+             combination == Combination::weighed ? PathCarry::wavelengths_and_pdfs : PathCarry::wavelengths),
+      view_(view),
+      is_weighed_(combination == Combination::weighed) {
     if (view.has_features) {
         albedo_weights_ = view.camera->albedo_weights();
     }

@@ -65,10 +65,10 @@ class PathTracer {
     void add_features(std::size_t pixel, const spectral::PathWavelengths& strata, const FirstSurface& first,
                       FilmTile& tile) const;
 
-    View view_;
-    bool is_weighed_;
     TilePaths paths_;
     std::vector<Vec3d> albedo_weights_;  // a stratum each; none without features
+    View view_;
+    bool is_weighed_;
 };
 
 }  // namespace lensproof::render
