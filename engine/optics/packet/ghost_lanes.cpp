@@ -6,7 +6,7 @@ namespace lensproof::optics {
 
 namespace {
 
-const LoopsByLevel<GhostKernel>& kernels() {
+const LoopsByLevel<GhostKernel>& ghost_kernels() {
     static const LoopsByLevel<GhostKernel> found{
         {SimdLevel::scalar, scalar_ghost_kernel},
         {SimdLevel::baseline, baseline_ghost_kernel},
@@ -32,7 +32,7 @@ GhostLanes trace_ghost_lanes(const SpectralLens<double>& lens, std::span<const s
                              const GhostPath& path, const Ray<double>& ray, const StrayMirrors<double>& mirrors,
                              std::optional<SimdLevel> level) {
     GhostLanes lanes;
-    kernels().at(level)(kernel_lens(lens),
+    ghost_kernels().at(level)(kernel_lens(lens),
                         {.reflections = path.data(),
                          .count = static_cast<int>(path.size()),
                          .wavelengths = wavelengths.data(),
