@@ -61,9 +61,11 @@ Fates compare(const Lens& lens, const SpectralLens<double>& at, double steepest)
                         ++arrived;
                     }
                 }
-                fates.arrived += arrived;
-                fates.ended += 4 - arrived;
-                fates.parted += arrived % 4 != 0 ? 1 : 0;
+                if (level == SimdLevel::scalar) {  // once, however many levels there are
+                    fates.arrived += arrived;
+                    fates.ended += 4 - arrived;
+                    fates.parted += arrived % 4 != 0 ? 1 : 0;
+                }
             }
         }
     }
@@ -87,12 +89,12 @@ TEST(GhostLanes, HaveTheBitsOfTheScalar) {
     for (const char* name : {"tessar", "petzval", "muller-fisheye", "double-gauss-tronnier"}) {
         const Lens lens = formats::load_lens(name);
         const Fates fates = compare(lens, at_three(lens), name[0] == 'm' ? 1.5 : 0.5);
-        EXPECT_GT(fates.arrived, 50) << name;
+        EXPECT_GT(fates.arrived, 10) << name;
         seen = {seen.arrived + fates.arrived, seen.ended + fates.ended, seen.parted + fates.parted};
     }
-    EXPECT_GT(seen.arrived, 1000);
-    EXPECT_GT(seen.ended, 1000);
-    EXPECT_GT(seen.parted, 50);
+    EXPECT_GT(seen.arrived, 300);
+    EXPECT_GT(seen.ended, 300);
+    EXPECT_GT(seen.parted, 15);
 }
 
 // Blades, which reflect too, coatings, and groups that are turned and displaced.
@@ -103,7 +105,7 @@ TEST(GhostLanes, PassWhateverSurfacesHave) {
           formats::load_lens("tessar", {.coatings = {"broadband,1=v-coat"}})}) {
         const SpectralLens<double> at = at_three(lens);
         ASSERT_FALSE(at.at(0).specials.empty());
-        EXPECT_GT(compare(lens, at, 0.4).arrived, 300);
+        EXPECT_GT(compare(lens, at, 0.4).arrived, 75);
     }
 }
 
@@ -120,7 +122,7 @@ TEST(GhostLanes, PassShapesAndGlassThatAbsorbs) {
         one.surfaces[2].special = 0;
     }
     at[1].attenuation.assign(lens.surfaces.size() + 1, 0.02);
-    EXPECT_GT(compare(lens, SpectralLens<double>(at), 0.4).arrived, 300);
+    EXPECT_GT(compare(lens, SpectralLens<double>(at), 0.4).arrived, 75);
 }
 
 }  // namespace lensproof::optics::ghost_lanes_test
