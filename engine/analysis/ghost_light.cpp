@@ -24,16 +24,16 @@ Vec2d draw(Random& random) {
 struct GridRays {
     std::vector<LandedRay> rays;
     std::unordered_map<std::uint64_t, std::size_t> at;
-    std::vector<GhostRegion::Cell> places;
+    std::vector<GridCell> places;
     int traced = 0;
 
-    [[nodiscard]] std::optional<std::size_t> find(GhostRegion::Cell place) const {
+    [[nodiscard]] std::optional<std::size_t> find(GridCell place) const {
         const auto found = at.find(GhostRegion::key(place.x, place.y));
         return found == at.end() ? std::nullopt : std::optional(found->second);
     }
 
     /// What the landing moves by from the ray at a place to the next along an axis.
-    [[nodiscard]] std::optional<Vec2d> step_at(GhostRegion::Cell place, int dx, int dy) const {
+    [[nodiscard]] std::optional<Vec2d> step_at(GridCell place, int dx, int dy) const {
         const auto here = find(place);
         const auto next = find({place.x + dx, place.y + dy});
         const auto before = find({place.x - dx, place.y - dy});

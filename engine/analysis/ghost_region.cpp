@@ -18,7 +18,7 @@ constexpr int kMostDivisions = 10;
 constexpr int kResolved = 10;              // cells that land: then the region is seen, and not only its surroundings
 constexpr std::size_t kMostCells = 16000;  // that are divided: a region too ragged for fewer is sampled as it is
 
-using Cells = std::vector<GhostRegion::Cell>;
+using Cells = std::vector<GridCell>;
 
 constexpr std::array<std::array<int, 2>, 8> kNeighbours{
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
@@ -43,16 +43,16 @@ class Grid {
             at_.emplace(GhostRegion::key(x, y), std::move(margins));
         }
         is_fine_ = landing >= kResolved;
-        for (const GhostRegion::Cell& cell : cells) {
+        for (const GridCell& cell : cells) {
             fates_.emplace(GhostRegion::key(cell.x, cell.y), fate_of(cell));
         }
     }
 
-    [[nodiscard]] bool lands(const GhostRegion::Cell& cell) const {
+    [[nodiscard]] bool lands(const GridCell& cell) const {
         return fates_.at(GhostRegion::key(cell.x, cell.y)) == Fate::lands;
     }
 
-    [[nodiscard]] bool stays(const GhostRegion::Cell& cell) const {
+    [[nodiscard]] bool stays(const GridCell& cell) const {
         const Fate here = fates_.at(GhostRegion::key(cell.x, cell.y));
         return here == Fate::lands || here == Fate::may_land ||
                (here == Fate::ends &&
@@ -61,14 +61,14 @@ class Grid {
 
   private:
     template <class Map, class Holds>
-    static bool has_neighbour(const GhostRegion::Cell& cell, const Map& map, const Holds& holds) {
+    static bool has_neighbour(const GridCell& cell, const Map& map, const Holds& holds) {
         return std::ranges::any_of(kNeighbours, [&](const auto& step) {
             const auto next = map.find(GhostRegion::key(cell.x + step[0], cell.y + step[1]));
             return next != map.end() && holds(next->second);
         });
     }
 
-    [[nodiscard]] Fate fate_of(const GhostRegion::Cell& cell) const {
+    [[nodiscard]] Fate fate_of(const GridCell& cell) const {
         const LandingMargins& here = at_.at(GhostRegion::key(cell.x, cell.y));
         std::array<const LandingMargins*, 4> beside{};
         for (std::size_t i = 0; i < beside.size(); ++i) {
@@ -138,7 +138,7 @@ GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, 
         region.search_rays += static_cast<int>(cells.size());
         region.cells.clear();
         std::size_t landing = 0;
-        for (const GhostRegion::Cell& cell : cells) {
+        for (const GridCell& cell : cells) {
             if (grid.stays(cell)) {
                 region.cells.push_back(cell);
                 landing += grid.lands(cell) ? 1 : 0;

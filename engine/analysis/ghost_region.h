@@ -39,11 +39,10 @@ class HeldCells {
 
 /// Squares of a grid over a FrontBeam's square.
 struct GhostRegion {
-    using Cell = GridCell;
     int across = 1;     // cells along a side of the whole
     double cell = 0.0;  // side, mm
     Vec2d corner;
-    std::vector<Cell> cells;
+    std::vector<GridCell> cells;
     HeldCells held;  // the same
     int search_rays = 0;
 

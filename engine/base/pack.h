@@ -61,6 +61,17 @@ class Pack {
         return Pack(Lanes([](auto lane) { return static_cast<Scalar>(lane); }));
     }
 
+    /// value(lane) for each lane of `lanes`, else `otherwise`.
+    template <class Value>
+    static Pack by_lane(const Mask& lanes, Pack otherwise, const Value& value) {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (lanes[lane]) {
+                otherwise.set(lane, value(lane));
+            }
+        }
+        return otherwise;
+    }
+
     /// table[index[lane]] for each lane.
     template <class Entry, class Index>
     static Pack gather(const Entry* table, const Index* index) {

@@ -40,7 +40,7 @@ View PreparedScene::view(std::uint64_t seed, bool has_features) const {
             .seed = seed,
             .has_features = has_features,
             .paths = {.max_bounces = setup_.max_bounces},
-            .diffracted_from_airy = setup_.diffracted_from_airy};
+            .diffraction = setup_.diffraction};
 }
 
 Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
@@ -80,8 +80,8 @@ std::map<std::string, std::string> PreparedScene::metadata() const {
     std::map<std::string, std::string> metadata = camera_.metadata();
     if (std::holds_alternative<scene::Scene>(world_)) {
         metadata["lensproof:maxBounces"] = fmt::format("{}", setup_.max_bounces);
-        if (setup_.diffracted_from_airy != kFirstDarkRing) {
-            metadata["lensproof:diffractedFromAiry"] = fmt::format("{}", setup_.diffracted_from_airy);
+        if (const double from = setup_.diffraction.smallest_airy; from != DiffractionSettings{}.smallest_airy) {
+            metadata["lensproof:diffractedFromAiry"] = fmt::format("{}", from);
         }
     }
     return metadata;

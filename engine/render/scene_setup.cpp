@@ -52,8 +52,8 @@ void read_render_table(TomlTable& table, SceneSetup& setup) {
     setup.samples_per_pixel = table.integer_or("samples_per_pixel", setup.samples_per_pixel, 1, 1 << 20);
     if (!setup.chart) {
         setup.max_bounces = table.integer_or("max_bounces", setup.max_bounces, 0, 10000);
-        setup.diffracted_from_airy =
-            table.number_or("diffracted_from_airy", setup.diffracted_from_airy, {.min = 1.0, .max = 1000.0});
+        setup.diffraction.smallest_airy =
+            table.number_or("diffracted_from_airy", setup.diffraction.smallest_airy, {.min = 1.0, .max = 1000.0});
     }
     read_spectral_sampling(table, setup.spectral);
     const int wavelengths = setup.spectral.strata();

@@ -6,6 +6,7 @@
 
 #include "engine/render/camera/camera_settings.h"
 #include "engine/render/raw/raw_sensor.h"
+#include "engine/render/stray/diffraction_settings.h"
 #include "engine/scene/scene_description.h"
 
 namespace lensproof::render {
@@ -28,7 +29,7 @@ struct SceneSetup {
     int samples_per_pixel = 64;
     std::optional<RawSensor> sensor;  // the electronics behind the film, where a raw file is wanted
     int max_bounces = 16;             // scatterings on a path between camera and light; 0: lights alone are seen
-    double diffracted_from_airy = kFirstDarkRing;  // deflections on the film, λN, from which light counts as diffracted
+    DiffractionSettings diffraction;
 };
 
 /// Reads a scene file, as engine/scene/README.md documents it: [camera], [[materials]], [[objects]], [[lights]],

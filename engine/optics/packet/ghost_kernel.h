@@ -99,18 +99,17 @@ class GhostTracer {
                         Vec3<Numbers> from_vertex, const Vec3<Numbers>& direction) {
         const Numbers heading(is_forward ? 1.0 : -1.0);
         Meeting met;
+        Numbers to_vertex(0.0);
         if (special != nullptr && special->has_shape) {
             std::tie(met.at, met.normal) = intersect(special->shape, from_vertex, direction, heading);
-            met.distance = Numbers(0.0) + met.at.distance;
-            return met;
+        } else {
+            if (is_forward ? surface.from_far_forward : surface.from_far_reverse) {
+                to_vertex = distance_to_vertex(from_vertex, direction);
+                from_vertex = from_vertex + to_vertex * direction;
+            }
+            met.at = intersect_from_near(from_vertex, direction, Numbers(surface.curvature), heading);
+            met.normal = normal_of_sphere(met.at.point, Numbers(surface.curvature), heading);
         }
-        Numbers to_vertex(0.0);
-        if (is_forward ? surface.from_far_forward : surface.from_far_reverse) {
-            to_vertex = distance_to_vertex(from_vertex, direction);
-            from_vertex = from_vertex + to_vertex * direction;
-        }
-        met.at = intersect_from_near(from_vertex, direction, Numbers(surface.curvature), heading);
-        met.normal = normal_of_sphere(met.at.point, Numbers(surface.curvature), heading);
         met.distance = to_vertex + met.at.distance;
         return met;
     }
@@ -120,15 +119,13 @@ class GhostTracer {
         const double limit = lens_.surfaces[index].semi_diameter_squared;
         const Numbers r2 = point.x * point.x + point.y * point.y;
         const Mask is_inside = r2 <= Numbers(limit > 0.0 ? limit : -1.0);
-        Numbers open = select(is_inside, Numbers(1.0), Numbers(0.0));
-        if (special != nullptr && !special->mask.is_full_circle()) {
-            for (int lane = 0; lane < kLanes; ++lane) {
-                if (going_[lane] && is_inside[lane]) {
-                    open.set(lane, lane_mask_transmittance(*lens_.lens, index, point.x[lane], point.y[lane]));
-                }
-            }
+        const Numbers by_rim = select(is_inside, Numbers(1.0), Numbers(0.0));
+        if (special == nullptr || special->mask.is_full_circle()) {
+            return by_rim;
         }
-        return open;
+        return Numbers::by_lane(going_ && is_inside, by_rim, [&](int lane) {
+            return lane_mask_transmittance(*lens_.lens, index, point.x[lane], point.y[lane]);
+        });
     }
 
     void run_to_surface(int index, bool is_forward, bool reflects) {
@@ -163,11 +160,12 @@ class GhostTracer {
         const Numbers before = by_wavelength(is_forward ? of.before : of.after);
         const Numbers after = by_wavelength(is_forward ? of.after : of.before);
         const Numbers heading(is_forward ? 1.0 : -1.0);
-        const auto& [point, length, cos_incidence, sin2_incidence, hit] = met.at;
-        const Refraction<Numbers> bent = special != nullptr && special->has_shape
-                                             ? refract(direction, met.normal, cos_incidence, sin2_incidence, ratio)
-                                             : refract_at_sphere(direction, point, Numbers(surface.curvature), heading,
-                                                                 cos_incidence, sin2_incidence, ratio);
+        const Numbers& cos_incidence = met.at.cos_incidence;
+        const Refraction<Numbers> bent =
+            special != nullptr && special->has_shape
+                ? refract(direction, met.normal, cos_incidence, met.at.sin2_incidence, ratio)
+                : refract_at_sphere(direction, met.at.point, Numbers(surface.curvature), heading, cos_incidence,
+                                    met.at.sin2_incidence, ratio);
         const bool is_coated = special != nullptr && !special->coating.is_bare();
         if (reflects) {
             direction = reflect(direction, met.normal, cos_incidence);
@@ -197,13 +195,9 @@ class GhostTracer {
     /// A coating's power, wavelength by wavelength.
     template <class Power>
     [[nodiscard]] Numbers coated(const Power& power, int index, bool is_forward, const Numbers& cos_incidence) const {
-        Numbers found(0.0);
-        for (int lane = 0; lane < kLanes; ++lane) {
-            if (going_[lane]) {
-                found.set(lane, power(*lens_.lens, wavelengths_[lane], index, is_forward, cos_incidence[lane]));
-            }
-        }
-        return found;
+        return Numbers::by_lane(going_, Numbers(0.0), [&](int lane) {
+            return power(*lens_.lens, wavelengths_[lane], index, is_forward, cos_incidence[lane]);
+        });
     }
 
     const KernelLens<double>& lens_;
@@ -227,7 +221,7 @@ template <class Abi>
     }
 }
 
-/// As many lanes as are wanted, or as a register of these instructions holds.
+/// So many doubles, in one register of the file's instructions.
 template <int lanes>
 using GhostAbi = std::experimental::simd_abi::deduce_t<double, lanes>;
 

@@ -33,13 +33,13 @@ GhostLanes trace_ghost_lanes(const SpectralLens<double>& lens, std::span<const s
                              std::optional<SimdLevel> level) {
     GhostLanes lanes;
     ghost_kernels().at(level)(kernel_lens(lens),
-                        {.reflections = path.data(),
-                         .count = static_cast<int>(path.size()),
-                         .wavelengths = wavelengths.data(),
-                         .ray = ray,
-                         .mirrors = mirrors,
-                         .image_z = lens.at().front().image_z},
-                        lanes);
+                              {.reflections = path.data(),
+                               .count = static_cast<int>(path.size()),
+                               .wavelengths = wavelengths.data(),
+                               .ray = ray,
+                               .mirrors = mirrors,
+                               .image_z = lens.at().front().image_z},
+                              lanes);
     return lanes;
 }
 

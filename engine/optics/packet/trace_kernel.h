@@ -395,28 +395,21 @@ class BlockTracer {
     /// Of the rays in `lanes`, one by one; 1 for the others.
     Numbers mask_transmittances(const Here& here, const SpecialSurface<Scalar>& special, const Vec3<Numbers>& point,
                                 const Mask& lanes) const {
-        Numbers open(Scalar(1));
-        if (!special.mask.is_full_circle()) {
-            for (int lane = 0; lane < kLanes; ++lane) {
-                if (lanes[lane]) {
-                    open.set(lane, lane_mask_transmittance(*lens_.lens, here.index, point.x[lane], point.y[lane]));
-                }
-            }
+        const Numbers whole(Scalar(1));
+        if (special.mask.is_full_circle()) {
+            return whole;
         }
-        return open;
+        return Numbers::by_lane(lanes, whole, [&](int lane) {
+            return lane_mask_transmittance(*lens_.lens, here.index, point.x[lane], point.y[lane]);
+        });
     }
 
     Numbers coated_transmittances(const Here& here, int packet, const Intersection<Numbers>& met,
                                   const Mask& lanes) const {
-        Numbers passing(Scalar(1));
-        for (int lane = 0; lane < kLanes; ++lane) {
-            if (lanes[lane]) {
-                const int wavelength = lens_.is_monochromatic ? 0 : rays_.wavelength[at(packet) + lane];
-                passing.set(lane, lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward,
-                                                            met.cos_incidence[lane]));
-            }
-        }
-        return passing;
+        return Numbers::by_lane(lanes, Numbers(Scalar(1)), [&](int lane) {
+            const int wavelength = lens_.is_monochromatic ? 0 : rays_.wavelength[at(packet) + lane];
+            return lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward, met.cos_incidence[lane]);
+        });
     }
 
     /// Which rays of a packet met a surface, and which go on.

@@ -13,9 +13,6 @@
 
 namespace lensproof::render {
 
-/// Airy's, in λN (Born & Wolf, Principles of Optics, 7th ed., §8.5.2).
-inline constexpr double kFirstDarkRing = 1.22;
-
 /// What stands for the lens. All are made from a lens and its settings, expose alike, and so can be compared:
 ///
 ///   exact              the lens itself, surface by surface; "exact-double" too

@@ -58,7 +58,7 @@ Render barrel(const View& view, const Integrator& /*integrator*/) {
 }
 
 Render diffracted(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, DiffractedEntrance(*view.camera, {view.diffracted_from_airy}), 0x510e527fade682d1ULL);
+    return astray(view, DiffractedEntrance(*view.camera, view.diffraction), 0x510e527fade682d1ULL);
 }
 
 Render everything(const View& view, const Integrator& /*integrator*/) {
@@ -102,8 +102,7 @@ std::vector<Render> renders_of(const std::vector<std::string>& names, const View
     const bool is_diffracted = std::ranges::find(names, "diffracted") != names.end();
     View stray = view;
     stray.camera = view.stray_camera != nullptr ? view.stray_camera : view.camera;
-    const double straight =
-        is_diffracted ? DiffractedEntrance(*stray.camera, {view.diffracted_from_airy}).geometric_share() : 1.0;
+    const double straight = is_diffracted ? DiffractedEntrance(*stray.camera, view.diffraction).geometric_share() : 1.0;
     std::vector<Render> renders;
     for (const std::string& name : names) {
         const Pass& pass = pass_named(name);

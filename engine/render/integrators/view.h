@@ -7,6 +7,7 @@
 #include "engine/render/camera/camera.h"
 #include "engine/render/film/film.h"
 #include "engine/render/integrators/path_vertex.h"
+#include "engine/render/stray/diffraction_settings.h"
 #include "engine/scene/chart/chart.h"
 #include "engine/scene/chart/pose.h"
 #include "engine/scene/scene.h"
@@ -32,7 +33,7 @@ struct View {
     /// Ghosts are searched for where they enter, which takes seconds for a lens; else at once, with more noise.
     bool guides_ghosts = true;
     PathSettings paths;
-    double diffracted_from_airy = kFirstDarkRing;  // DiffractionSettings
+    DiffractionSettings diffraction;
 
     [[nodiscard]] const scene::Scene& scene() const { return std::get<scene::Scene>(*world); }
     [[nodiscard]] const EvenChart& chart() const { return std::get<EvenChart>(*world); }

@@ -7,19 +7,9 @@
 #include "engine/optics/stop_aim.h"
 #include "engine/render/sampling/path_sampler.h"
 #include "engine/render/stray/camera_front.h"
+#include "engine/render/stray/diffraction_settings.h"
 
 namespace lensproof::render {
-
-/// Where diffraction begins.
-struct DiffractionSettings {
-    /// Deflections on the film, in λN, from which light counts as diffracted; at least 1. The default is the radius of
-    /// Airy's first dark ring: the core of the image is left to the light that goes straight on. Rays know nothing of
-    /// the rings' interference, so from about 5 on they carry the wave's light within 5 %, nearer by its mean alone.
-    double smallest_airy = kFirstDarkRing;
-    /// Of the zone beside the edges in which rays that come anyway are diffracted, in units of the stop's
-    /// semi-diameter: they stand for the light at the edge, so it is to be narrow.
-    double zone_width = 0.02;
-};
 
 /// An entrance (entry.h): a point of the stop's edges is drawn, evenly along them; light of the origin is aimed at it,
 /// and goes on along the edge's Keller cone, through the rest of the lens. It is the limit of a zone beside the edges

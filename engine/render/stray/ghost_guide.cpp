@@ -67,7 +67,7 @@ std::string GhostGuide::Known::serialized() const {
     for (const analysis::GhostRegion& region : regions) {
         append_bytes(bytes, region.across, region.cell, region.corner.x, region.corner.y, region.search_rays,
                      static_cast<std::uint32_t>(region.cells.size()));
-        for (const analysis::GhostRegion::Cell& cell : region.cells) {
+        for (const analysis::GridCell& cell : region.cells) {
             append_bytes(bytes, cell.x, cell.y);
         }
     }

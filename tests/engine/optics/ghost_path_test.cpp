@@ -13,6 +13,7 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/lens.h"
+#include "tests/engine/optics/some_ghosts.h"
 #include "tests/engine/random_lens.h"
 #include "tests/places.h"
 
@@ -44,20 +45,6 @@ TraceLens<T> build(const std::vector<Row>& rows, double image_z = 100.0) {
 Ray<double> towards_origin(double slope_angle) {
     const Vec3d direction{0.0, std::sin(slope_angle), std::cos(slope_angle)};
     return {-5.0 * direction, direction};
-}
-
-/// The ghosts of two reflections, and some of four.
-std::vector<GhostPath> some_paths(int surfaces) {
-    std::vector<GhostPath> paths;
-    for (int a = 1; a < surfaces; ++a) {
-        for (int b = 0; b < a; ++b) {
-            paths.push_back({a, b});
-            if ((a + b) % 3 == 0) {
-                paths.push_back({a, b, std::min(b + 2, surfaces - 1), b});
-            }
-        }
-    }
-    return paths;
 }
 
 // A plate of thickness t: each return inside it shifts the outgoing ray by 2 t sin i' of its own length across, which
@@ -236,7 +223,7 @@ TEST(GhostPath, ReverseRetracesForward) {
     for (const char* name : {"tessar", "heliar-tronnier"}) {
         const TraceLens<double> lens = at_wavelength<double>(formats::load_lens(name), 550.0);
         int passed = 0;
-        for (const GhostPath& path : some_paths(static_cast<int>(lens.surfaces.size()))) {
+        for (const GhostPath& path : some_ghosts(static_cast<int>(lens.surfaces.size()))) {
             for (const Ray<double>& ray : rays_into(lens, 30, 1)) {
                 const StrayMirrors<double> mirrors{.sensor = 0.1, .blades = 0.05};
                 const TracedRay<double> out = trace_ghost(lens, path, ray, mirrors);
@@ -265,7 +252,7 @@ TEST(GhostPath, DoubleIsLongDoubleToItsRounding) {
     const TraceLens<double> narrow = at_wavelength<double>(lens, 550.0);
     const TraceLens<long double> wide = convert_lens<long double>(narrow);
     int compared = 0;
-    for (const GhostPath& path : some_paths(static_cast<int>(lens.surfaces.size()))) {
+    for (const GhostPath& path : some_ghosts(static_cast<int>(lens.surfaces.size()))) {
         for (const Ray<double>& ray : rays_into(narrow, 30, 2)) {
             constexpr double kBeside = 1e-9;
             const TracedRay<double> a = trace_ghost(narrow, path, ray);

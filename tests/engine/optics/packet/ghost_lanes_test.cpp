@@ -5,27 +5,18 @@
 
 #include <random>
 
-#include "engine/base/file.h"
-#include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
-#include "engine/formats/prescription/prescription_file.h"
-#include "tests/test_folder.h"
+#include "tests/engine/optics/packet/varied_tessars.h"
+#include "tests/engine/optics/some_ghosts.h"
 
 namespace lensproof::optics::ghost_lanes_test {
 
-/// Ghosts of two reflections, some of four, and some that the sensor takes part in.
+/// And some that the sensor takes part in.
 std::vector<GhostPath> some_paths(int surfaces) {
-    std::vector<GhostPath> paths;
-    for (int a = 1; a < surfaces; ++a) {
-        for (int b = 0; b < a; ++b) {
-            paths.push_back({a, b});
-            if ((a + b) % 3 == 0) {
-                paths.push_back({a, b, std::min(b + 2, surfaces - 1), b});
-            }
-        }
-        paths.push_back({surfaces, a});
+    std::vector<GhostPath> paths = some_ghosts(surfaces);
+    for (int last = 1; last < surfaces; ++last) {
+        paths.push_back({surfaces, last});
     }
-    std::erase_if(paths, [&](const GhostPath& path) { return !path_fault(path, surfaces).empty(); });
     return paths;
 }
 
@@ -76,14 +67,6 @@ SpectralLens<double> at_three(const Lens& lens) {
     return at_wavelengths<double>(lens, {400.0, 550.0, 700.0});
 }
 
-/// A file with the Tessar and more in it.
-Lens tessar_with(const std::string& more) {
-    const TestFolder folder;
-    const std::filesystem::path file = folder.path() / "tessar_with.toml";
-    write_file(file, read_file(formats::find_lens_file("tessar")) + more);
-    return formats::load_lens(file.string());
-}
-
 TEST(GhostLanes, HaveTheBitsOfTheScalar) {
     Fates seen;
     for (const char* name : {"tessar", "petzval", "muller-fisheye", "double-gauss-tronnier"}) {
@@ -99,10 +82,7 @@ TEST(GhostLanes, HaveTheBitsOfTheScalar) {
 
 // Blades, which reflect too, coatings, and groups that are turned and displaced.
 TEST(GhostLanes, PassWhateverSurfacesHave) {
-    for (const Lens& lens :
-         {tessar_with("[stop]\nblades = 6\nrotation_deg = 10\n"),
-          tessar_with("[[groups]]\nsurfaces = [3, 6]\ntilt_deg = [1, -2, 0]\ndecentre_mm = [0.3, 0.2]\n"),
-          formats::load_lens("tessar", {.coatings = {"broadband,1=v-coat"}})}) {
+    for (const Lens& lens : varied_tessars()) {
         const SpectralLens<double> at = at_three(lens);
         ASSERT_FALSE(at.at(0).specials.empty());
         EXPECT_GT(compare(lens, at, 0.4).arrived, 75);

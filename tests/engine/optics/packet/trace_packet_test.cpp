@@ -8,14 +8,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "engine/base/file.h"
-#include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
-#include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/packet/trace_batch.h"
-#include "tests/test_folder.h"
+#include "tests/engine/optics/packet/varied_tessars.h"
 
 namespace lensproof::optics::trace_packet_test {
 
@@ -160,20 +157,11 @@ TEST(TracePacket, AClosedStopStopsEveryLane) {
     EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::stopped)], 0);
 }
 
-/// A file with the Tessar and more in it.
-Lens tessar_with(const std::string& more) {
-    const TestFolder folder;
-    const std::filesystem::path file = folder.path() / "tessar_with.toml";
-    write_file(file, read_file(formats::find_lens_file("tessar")) + more);
-    return formats::load_lens(file.string());
-}
-
 // Blades, coatings and turned, displaced groups, each at three wavelengths, where a coating's transmittance differs.
 TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
-    for (const Lens& lens :
-         {tessar_with("[stop]\nblades = 6\nrotation_deg = 10\n"),
-          tessar_with("[[groups]]\nsurfaces = [3, 6]\ntilt_deg = [1, -2, 0]\ndecentre_mm = [0.3, 0.2]\n"),
-          formats::load_lens("heliar-tronnier"), formats::load_lens("tessar", {.coatings = {"broadband,1=v-coat"}})}) {
+    std::vector<Lens> lenses = varied_tessars();
+    lenses.push_back(formats::load_lens("heliar-tronnier"));
+    for (const Lens& lens : lenses) {
         ASSERT_FALSE(at_wavelength<double>(lens, 550.0).specials.empty());
         const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 400, 0.4));
         EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
