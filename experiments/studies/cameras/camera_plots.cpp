@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "experiments/studies/cameras/measured_camera.h"
 
@@ -50,6 +51,12 @@ class CameraPlots {
                    fmt::format("Chromatic shift of {}: measured minus traced", colour), "", "difference", "px",
                    limits_.chromatic_shift_px});
             add_difference(curve);
+        }
+
+        begin({"chromatic-wavelengths", "Lateral colour by wavelength",
+               "radial position of single wavelengths minus the green channel's", "shift", "px"});
+        for (const std::string& channel : shown_wavelengths()) {
+            add_measured(kQuantities.chromatic_shift.key(channel), ", " + channel);
         }
 
         begin({"sharpness", "Sharpness", "MTF50 along the radius (tangential) and across (sagittal), green", "MTF50",
@@ -102,6 +109,28 @@ class CameraPlots {
             *floor *= scale;
         }
         add(camera_.subject.id, "difference", scaled, floor);
+    }
+
+    /// Those that any of the curves' sources has by itself.
+    [[nodiscard]] std::set<std::string> shown_wavelengths() const {
+        std::vector<const calibration::Profile*> sources = {&camera_.profile};
+        if (camera_.traced) {
+            sources.push_back(&*camera_.traced);
+        }
+        for (const calibration::Profile& reference : camera_.references) {
+            sources.push_back(&reference);
+        }
+        std::set<std::string> channels;
+        for (const calibration::Profile* source : sources) {
+            for (const auto& [key, curve] : source->curves) {
+                const auto known = calibration::quantity_of(key);
+                if (known && known->quantity.key(known->channel) == kQuantities.chromatic_shift.key(known->channel) &&
+                    known->channel.ends_with("nm")) {
+                    channels.insert(known->channel);
+                }
+            }
+        }
+        return channels;
     }
 
     /// In green (grey photos: their one channel).

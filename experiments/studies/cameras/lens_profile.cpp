@@ -10,6 +10,7 @@
 #include <string>
 
 #include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
 #include "engine/optics/chief_ray.h"
@@ -31,6 +32,7 @@ constexpr int kFieldAngles = 400;
 constexpr std::size_t kIlluminationStride = 4;
 
 using PerChannel = std::array<double, 3>;
+using PerWavelength = std::array<double, kShownWavelengths_nm.size()>;
 
 /// What each channel makes of a white's light, a stratum each; up to a common factor.
 std::vector<PerChannel> channel_weights(const render::Camera& camera) {
@@ -43,27 +45,33 @@ std::vector<PerChannel> channel_weights(const render::Camera& camera) {
     return weights;
 }
 
-/// Image heights (mm) of each channel over field angle: the mean of the wavelengths' chief rays.
-struct HeightTable {
-    std::vector<double> field_angle;
-    std::vector<PerChannel> height;
+template <std::size_t n>
+std::array<double, n> mixed(const std::array<double, n>& a, const std::array<double, n>& b, double t) {
+    std::array<double, n> result{};
+    std::ranges::transform(a, b, result.begin(), [t](double from, double to) { return std::lerp(from, to, t); });
+    return result;
+}
 
-    /// Field angle at which the green channel has `height_mm`, with the other channels' heights there.
+/// Image heights (mm) over field angle: of each channel, the mean of the wavelengths' chief rays, and of some
+/// wavelengths alone.
+struct HeightTable {
     struct Row {
         double field_angle = 0.0;
         PerChannel height{};
+        PerWavelength alone{};
     };
+    std::vector<Row> rows;
+
+    /// Where the green channel has `height_mm`.
     [[nodiscard]] std::optional<Row> at_green_height(double height_mm) const {
-        for (std::size_t i = 1; i < height.size(); ++i) {
-            const double low = height[i - 1][kGreen];
-            const double high = height[i][kGreen];
-            if (height_mm <= high) {
-                const double t = (height_mm - low) / (high - low);
-                Row row{.field_angle = std::lerp(field_angle[i - 1], field_angle[i], t), .height = {}};
-                for (std::size_t c = 0; c < 3; ++c) {
-                    row.height[c] = std::lerp(height[i - 1][c], height[i][c], t);
-                }
-                return row;
+        for (std::size_t i = 1; i < rows.size(); ++i) {
+            const Row& low = rows[i - 1];
+            const Row& high = rows[i];
+            if (height_mm <= high.height[kGreen]) {
+                const double t = (height_mm - low.height[kGreen]) / (high.height[kGreen] - low.height[kGreen]);
+                return Row{.field_angle = std::lerp(low.field_angle, high.field_angle, t),
+                           .height = mixed(low.height, high.height, t),
+                           .alone = mixed(low.alone, high.alone, t)};
             }
         }
         return std::nullopt;
@@ -78,9 +86,12 @@ HeightTable chief_ray_heights(const render::Camera& camera) {
         rays.emplace_back(*camera.lens(), nm);
         field = std::min(field, rays.back().largest_field());
     }
+    std::vector<optics::ChiefRays> alone;
+    for (const double nm : kShownWavelengths_nm) {
+        alone.emplace_back(*camera.lens(), nm);
+    }
     HeightTable table;
-    table.field_angle.resize(kFieldAngles);
-    table.height.resize(kFieldAngles);
+    table.rows.resize(kFieldAngles);
     parallel_for(
         kFieldAngles, 0,
         [&](int i) {
@@ -94,9 +105,14 @@ HeightTable chief_ray_heights(const render::Camera& camera) {
                     weight[c] += weights[k][c];
                 }
             }
-            table.field_angle[i] = angle;
+            HeightTable::Row& row = table.rows[i];
+            row.field_angle = angle;
             for (std::size_t c = 0; c < 3; ++c) {
-                table.height[i][c] = sum[c] / weight[c];
+                row.height[c] = sum[c] / weight[c];
+            }
+            for (std::size_t w = 0; w < alone.size(); ++w) {
+                const std::optional<optics::ChiefRay> ray = alone[w].at_field(angle);
+                row.alone[w] = ray ? ray->image_height : kNaN;
             }
         },
         [](int) {});
@@ -119,7 +135,7 @@ PerChannel light_at(const std::vector<optics::TraceLens<double>>& strata, const 
 void add_geometry(const render::Camera& camera, double half_diagonal_mm, calibration::Profile& profile) {
     const HeightTable table = chief_ray_heights(camera);
     const double pitch_mm = camera.sensor().pixel_pitch_mm;
-    const double focal = table.height[1][kGreen] / table.field_angle[1];
+    const double focal = table.rows[1].height[kGreen] / table.rows[1].field_angle;
     for (const double x : calibration::standard_image_heights()) {
         const double r = x * half_diagonal_mm;
         const std::optional<HeightTable::Row> row = table.at_green_height(r);
@@ -137,6 +153,13 @@ void add_geometry(const render::Camera& camera, double half_diagonal_mm, calibra
         for (const int c : {0, 2}) {
             calibration::append_exact(profile.curves[kQuantities.chromatic_shift.key(kChannels[c])], x,
                                       (row->height[c] - row->height[kGreen]) / pitch_mm);
+        }
+        for (std::size_t w = 0; w < row->alone.size(); ++w) {
+            if (std::isfinite(row->alone[w])) {
+                const std::string wavelength = fmt::format("{:g}nm", kShownWavelengths_nm[w]);
+                calibration::append_exact(profile.curves[kQuantities.chromatic_shift.key(wavelength)], x,
+                                          (row->alone[w] - row->height[kGreen]) / pitch_mm);
+            }
         }
     }
 }

@@ -1,9 +1,14 @@
 // experiments/studies/cameras/lens_profile.h — what the lens's own rays say a measurement should find.
 #pragma once
+#include <array>
+
 #include "calibration/profile/profile.h"
 #include "engine/render/camera/camera.h"
 
 namespace lensproof::studies {
+
+/// Whose lateral colour a profile has by themselves, as that of spectral layers.
+inline constexpr std::array<double, 4> kShownWavelengths_nm = {450.0, 500.0, 600.0, 650.0};
 
 /// The profile that a perfect measurement of `camera`'s pictures would yield, from real chief rays and the real bundle
 /// that passes every rim (nothing rendered, nothing fitted): the curves of `calibration/profile/profile.h`, with bands

@@ -1,6 +1,7 @@
 // What explains simulated profiles of lenses whose faults are known.
 #include "calibration/explain/explanation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +47,24 @@ void PrintTo(const Trial& trial, std::ostream* out) {
     *out << trial.name;
 }
 
-class ExplainedFaults : public testing::TestWithParam<Trial> {};
+/// Counts over all faults, where they are tried in one run of the program.
+class ExplainedFaults : public testing::TestWithParam<Trial> {
+  protected:
+    static void TearDownTestSuite() {
+        fmt::print("{} of {} faults named\n", named_, tried_);
+        if (tried_ >= 20U) {
+            EXPECT_GE(20U * named_, 18U * tried_);
+        }
+    }
+    static void count(bool is_named) {
+        named_ += is_named ? 1U : 0U;
+        ++tried_;
+    }
+
+  private:
+    static inline unsigned named_ = 0;
+    static inline unsigned tried_ = 0;
+};
 
 // Four seeds of each of five faults: of the twenty, eighteen have to be named. Each may miss at most one of four, and
 // its values lie within three standard errors, where they are those of the cause named first; of a normal distribution
@@ -66,7 +84,9 @@ TEST_P(ExplainedFaults, AreNamedWithinTheirErrors) {
             explained(trial.studio, simulated_profile(trial.studio, trial.faults, seed), trial.studio.lens);
         EXPECT_EQ(fit_verdict_name(found.verdict), std::string("explained")) << found.reason;
         EXPECT_LT(found.rms_um_after, 1.1 * found.noise_um);
-        named += names(found, trial.cause) ? 1U : 0U;
+        const bool is_named = names(found, trial.cause);
+        count(is_named);
+        named += is_named ? 1U : 0U;
         for (const auto& [name, value] : trial.faults) {
             const ExplainedChange& of = parameter(found, name);
             if (found.cause == trial.cause) {

@@ -59,14 +59,25 @@ TEST(ReferenceCurves, OfAMakersCorrectionAreThoseOfItsWarp) {
 // 600, against that of the d line.
 TEST(ReferenceCurves, OfAPrescriptionAreItsRays) {
     const calibration::Profile found = reference_curves(source_of("lens:nikkor-50"), camera(), 0.0);
-    optics::Lens lens = formats::load_lens("nikkor-50");
-    analysis::AnalysisSettings settings;
-    settings.wavelengths_nm = {spectral::kLineD};
-    settings.reference_wavelength_nm = spectral::kLineD;
-    settings.fields_deg = {15.0};
-    const analysis::FieldAnalysis field = analysis::analyze_lens(lens, settings).fields.front();
+    const optics::Lens lens = formats::load_lens("nikkor-50");
+    const auto field_at = [&](double nm) {
+        analysis::AnalysisSettings settings;
+        settings.wavelengths_nm = {nm};
+        settings.reference_wavelength_nm = nm;
+        settings.fields_deg = {15.0};
+        return analysis::analyze_lens(lens, settings).fields.front();
+    };
+    const analysis::FieldAnalysis field = field_at(spectral::kLineD);
     const double height = std::abs(field.chief_ray_point->y) / (0.5 * std::hypot(36.0, 24.0));
     EXPECT_NEAR(at(found, kQuantities.distortion.key(), height), field.distortion_percent.value(), 0.02);
+    // Of single wavelengths too; between samples, 1 % of the height apart, the curve is straight.
+    const auto shift = [&](const char* wavelength) {
+        return at(found, kQuantities.chromatic_shift.key(wavelength), height);
+    };
+    const double red_less_blue_px =
+        (std::abs(field_at(650.0).chief_ray_point->y) - std::abs(field_at(450.0).chief_ray_point->y)) / 6e-3;
+    EXPECT_GT(std::abs(red_less_blue_px), 0.2);
+    EXPECT_NEAR(shift("650nm") - shift("450nm"), red_less_blue_px, 0.02);
 }
 
 // Of three calibrations of that model the one of the camera's own size of sensor; vignetting at the camera's f-number
