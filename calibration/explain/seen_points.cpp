@@ -24,7 +24,7 @@ double pitch_mm(const NamedProfile& named) {
     return *named.profile.pixel_pitch_um * 1e-3;
 }
 
-/// The points that the profile's own fit used. The view has to have a pose.
+/// The points that the profile's own fit used.
 SeenView seen_view(const ProfileView& from, const ProfileGeometry& geometry, int profile) {
     SeenView view{.image = from.image, .profile = profile, .pose = pose_parameters(*from.pose), .points = {}};
     for (const ProfilePoint& point : from.points) {
@@ -172,7 +172,7 @@ SeenPoints seen_points(const std::vector<NamedProfile>& profiles) {
         require_same_camera(first, named);
         std::vector<SeenView> views;
         for (const ProfileView& view : named.profile.views) {
-            if (named.profile.geometry && view.found && view.pose) {
+            if (named.profile.geometry && has_posed_chart(view)) {
                 views.push_back(seen_view(view, *named.profile.geometry, index));
             }
         }

@@ -14,11 +14,6 @@
 namespace lensproof::calibration {
 namespace {
 
-Feature feature(const PointBundle& bundle, std::size_t view, std::size_t point) {
-    const ChartView& v = bundle.views[view];
-    return {v.chart_mm[point], v.image_px[point], bundle.disc_diameter_mm};
-}
-
 void hold(ceres::Problem& problem, std::vector<double>& intrinsics, const Held& held) {
     if (held.intrinsics.size() == intrinsics.size()) {
         problem.SetParameterBlockConstant(intrinsics.data());
@@ -44,6 +39,26 @@ ceres::Solver::Options solver_options() {
 }
 
 }  // namespace
+
+Feature feature(const ChartView& view, std::size_t point, double disc_diameter_mm) {
+    if (view.is_far()) {
+        return {.image_px = view.image_px[point], .direction = view.directions[point]};
+    }
+    return {.chart_mm = view.chart_mm[point], .image_px = view.image_px[point], .disc_diameter_mm = disc_diameter_mm};
+}
+
+Vec3d in_camera(const ChartView& view, std::size_t point, const Pose& pose) {
+    return view.is_far() ? turned(pose, view.directions[point]) : to_camera(pose, view.chart_mm[point]);
+}
+
+void add_point(ChartView& to, const ChartView& from, std::size_t point) {
+    if (from.is_far()) {
+        to.directions.push_back(from.directions[point]);
+    } else {
+        to.chart_mm.push_back(from.chart_mm[point]);
+    }
+    to.image_px.push_back(from.image_px[point]);
+}
 
 PointBundle make_bundle(const std::vector<ChartView>& views, double disc_diameter_mm) {
     PointBundle bundle{.views = views, .used = {}, .disc_diameter_mm = disc_diameter_mm, .frame = {}};
@@ -85,6 +100,8 @@ double solve(const PointBundle& bundle, BundleState& state, const Held& held, do
         problem.AddParameterBlock(state.poses[v].data(), 6);
         if (held.poses) {
             problem.SetParameterBlockConstant(state.poses[v].data());
+        } else if (bundle.views[v].is_far()) {
+            problem.SetManifold(state.poses[v].data(), new ceres::SubsetManifold(6, {3, 4, 5}));
         }
     }
     problem.AddParameterBlock(intrinsics.data(), static_cast<int>(intrinsics.size()));
@@ -106,8 +123,10 @@ double solve(const PointBundle& bundle, BundleState& state, const Held& held, do
         for (std::size_t i = 0; i < bundle.used[v].size(); ++i) {
             if (bundle.used[v][i]) {
                 problem.AddResidualBlock(
-                    reprojection_cost(kind(state.model), feature(bundle, v, i), bundle.frame).release(), loss,
-                    intrinsics.data(), state.poses[v].data(), state.heights.data());
+                    reprojection_cost(kind(state.model), feature(bundle.views[v], i, bundle.disc_diameter_mm),
+                                      bundle.frame)
+                        .release(),
+                    loss, intrinsics.data(), state.poses[v].data(), state.heights.data());
             }
         }
     }
@@ -120,7 +139,8 @@ double solve(const PointBundle& bundle, BundleState& state, const Held& held, do
 
 std::optional<Vec2d> residual(const PointBundle& bundle, const BundleState& state, std::size_t view,
                               std::size_t point) {
-    const auto cost = reprojection_cost(kind(state.model), feature(bundle, view, point), bundle.frame);
+    const auto cost =
+        reprojection_cost(kind(state.model), feature(bundle.views[view], point, bundle.disc_diameter_mm), bundle.frame);
     const std::vector<double> intrinsics = parameters(state.model);
     const double* blocks[3] = {intrinsics.data(), state.poses[view].data(), state.heights.data()};
     double values[2];

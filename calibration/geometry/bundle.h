@@ -15,7 +15,21 @@ struct ChartView {
     std::vector<Vec2d> chart_mm;
     std::vector<Vec2d> image_px;
     double weight = 1.0;  // of its squared residuals
+    /// In place of `chart_mm`: unit vectors to what is infinitely far away (stars), in a frame of their own. The view's
+    /// pose turns them, and has no translation.
+    std::vector<Vec3d> directions = {};
+
+    [[nodiscard]] bool is_far() const { return !directions.empty(); }
+    [[nodiscard]] int pose_unknowns() const { return is_far() ? 3 : 6; }
 };
+
+Feature feature(const ChartView& view, std::size_t point, double disc_diameter_mm);
+
+/// Where the pose puts a point, in the camera's frame: mm, or a direction.
+Vec3d in_camera(const ChartView& view, std::size_t point, const Pose& pose);
+
+/// Adds a point of another view of the same kind.
+void add_point(ChartView& to, const ChartView& from, std::size_t point);
 
 /// What was measured.
 struct PointBundle {

@@ -46,8 +46,8 @@ ViewNormal view_normal(const PointBundle& bundle, const BundleState& state, cons
         if (!bundle.used[view][i]) {
             continue;
         }
-        const auto cost = reprojection_cost(
-            kind(state.model), {points.chart_mm[i], points.image_px[i], bundle.disc_diameter_mm}, bundle.frame);
+        const auto cost =
+            reprojection_cost(kind(state.model), feature(points, i, bundle.disc_diameter_mm), bundle.frame);
         const double* blocks[3] = {intrinsics.data(), state.poses[view].data(), state.heights.data()};
         double* jacobians[3] = {by_intrinsics.data(), by_pose.data(), by_heights.data()};
         double values[2];
@@ -123,7 +123,9 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
     std::vector<ViewPart> parts;
     for (std::size_t v = 0; v < bundle.views.size(); ++v) {
         const ViewNormal own = view_normal(bundle, state, intrinsics, v);
-        const Eigen::Matrix<double, 6, 1> size = own.pose.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+        // Of what the view says nothing about, a translation of directions, 0.
+        const Eigen::Matrix<double, 6, 1> size =
+            own.pose.diagonal().unaryExpr([](double square) { return square > 0.0 ? 1.0 / std::sqrt(square) : 0.0; });
         const Matrix6 scaled = size.asDiagonal() * own.pose * size.asDiagonal();
         const Matrix6 inverse =
             size.asDiagonal() * Matrix6(least_norm_solution(scaled, Matrix6::Identity())) * size.asDiagonal();

@@ -1,14 +1,26 @@
 #include "calibration/geometry/bundle_start.h"
 
+#include <ceres/rotation.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "calibration/geometry/rotation_fit.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
 namespace {
+
+std::optional<Pose> turning_pose(const std::vector<Vec3d>& directions, const std::vector<Vec3d>& rays) {
+    const Eigen::Matrix3d rotation = rotation_onto(directions, rays);
+    double vector[3];
+    ceres::RotationMatrixToAngleAxis(rotation.data(), vector);
+    return std::isfinite(vector[0] + vector[1] + vector[2])
+               ? std::optional(Pose{.rotation_rad = {vector[0], vector[1], vector[2]}, .translation_mm = {}})
+               : std::nullopt;
+}
 
 // Poses under an undistorted model of the given focal length, and the rms misfit of the rays in px.
 std::optional<double> start_at(const PointBundle& bundle, ModelKind model, double focal, const Vec2d& middle,
@@ -33,12 +45,12 @@ std::optional<double> start_at(const PointBundle& bundle, ModelKind model, doubl
             const double lateral = radius > 0.0 ? std::sin(angle) / radius : 0.0;
             rays.push_back({lateral * dx, lateral * dy, std::cos(angle)});
         }
-        const auto pose = planar_pose(view.chart_mm, rays);
+        const auto pose = view.is_far() ? turning_pose(view.directions, rays) : planar_pose(view.chart_mm, rays);
         if (!pose) {
             return std::nullopt;
         }
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            const Vec3d seen = normalized(to_camera(*pose, view.chart_mm[i]));
+            const Vec3d seen = normalized(in_camera(view, i, *pose));
             const double miss = focal * length(seen - rays[i]);
             sum += miss * miss;
         }

@@ -13,7 +13,8 @@ struct BundleStart {
 };
 
 /// Undistorted cameras of focal lengths from a 180° fisheye's to a long lens's (or of the one that is known), centred,
-/// with the chart posed by `planar_pose`; the best first. Throws InputError when no view can be posed in any.
+/// with the chart posed by `planar_pose`, directions by `rotation_onto`; the best first. Throws InputError when no view
+/// can be posed in any.
 std::vector<BundleStart> bundle_starts(const PointBundle& bundle, ModelKind model, int width, int height,
                                        std::optional<double> known_focal_px);
 

@@ -1,10 +1,11 @@
 #include "calibration/geometry/cross_validation.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "calibration/geometry/projection_uncertainty.h"
+#include "calibration/geometry/rotation_fit.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
@@ -34,8 +35,7 @@ std::vector<ChartView> some_points(const std::vector<ChartView>& views, const Ke
         ChartView view{.name = views[v].name, .chart_mm = {}, .image_px = {}};
         for (std::size_t i = 0; i < views[v].image_px.size(); ++i) {
             if (keep(v, i)) {
-                view.chart_mm.push_back(views[v].chart_mm[i]);
-                view.image_px.push_back(views[v].image_px[i]);
+                add_point(view, views[v], i);
             }
         }
         result.push_back(std::move(view));
@@ -76,42 +76,33 @@ std::vector<Vec2d> grid(int width, int height) {
     return pixels;
 }
 
-Eigen::Vector3d vector_of(const Vec3d& v) {
-    return {v.x, v.y, v.z};
-}
-
 }  // namespace
 
 std::optional<HalvesDifference> mapping_difference(const CameraModel& a, const CameraModel& b,
                                                    const std::vector<Vec2d>& pixels) {
-    struct Seen {
-        Vec2d pixel;
-        Vec3d a;
-    };
-    std::vector<Seen> seen;
-    Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
+    std::vector<Vec2d> seen;
+    std::vector<Vec3d> by_a;
+    std::vector<Vec3d> by_b;
     for (const Vec2d& pixel : pixels) {
         const auto ray_a = unproject(a, pixel);
         const auto ray_b = unproject(b, pixel);
         if (ray_a && ray_b) {
-            seen.push_back({pixel, *ray_a});
-            correlation += vector_of(*ray_b) * vector_of(*ray_a).transpose();
+            seen.push_back(pixel);
+            by_a.push_back(*ray_a);
+            by_b.push_back(*ray_b);
         }
     }
     if (seen.size() < kLeastGridPoints) {
         return std::nullopt;
     }
-    // The rotation that brings a's rays closest to b's (Kabsch 1976).
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Vector3d signs(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-    const Eigen::Matrix3d rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+    const Eigen::Matrix3d rotation = rotation_onto(by_a, by_b);
     HalvesDifference difference;
     double sum = 0.0;
     int count = 0;
-    for (const Seen& s : seen) {
-        const Eigen::Vector3d turned = rotation * vector_of(s.a);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const Eigen::Vector3d turned = rotation * Eigen::Vector3d(by_a[i].x, by_a[i].y, by_a[i].z);
         if (const auto pixel = project(b, {turned(0), turned(1), turned(2)})) {
-            const double distance = std::hypot(pixel->x - s.pixel.x, pixel->y - s.pixel.y);
+            const double distance = std::hypot(pixel->x - seen[i].x, pixel->y - seen[i].y);
             difference.largest_px = std::max(difference.largest_px, distance);
             sum += distance * distance;
             ++count;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "calibration/geometry/bundle_start.h"
 #include "calibration/statistics/order_statistics.h"
@@ -107,8 +108,9 @@ class Fit {
 
     [[nodiscard]] int unknown_count() const {
         const auto free = parameters(empty_model(options_.model)).size() - held().intrinsics.size();
-        return static_cast<int>(free) + (options_.fit_board_shape ? kBoardTerms : 0) +
-               6 * static_cast<int>(bundle_.views.size());
+        return std::accumulate(bundle_.views.begin(), bundle_.views.end(),
+                               static_cast<int>(free) + (options_.fit_board_shape ? kBoardTerms : 0),
+                               [](int sum, const ChartView& view) { return sum + view.pose_unknowns(); });
     }
 
     void check_counts() const {
@@ -155,8 +157,8 @@ class Fit {
     [[nodiscard]] double largest_angle(const BundleState& state) const {
         double largest = 0.0;
         for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
-            for (const Vec2d& point : bundle_.views[v].chart_mm) {
-                const Vec3d at = to_camera(to_pose(state.poses[v]), point);
+            for (std::size_t i = 0; i < bundle_.views[v].image_px.size(); ++i) {
+                const Vec3d at = in_camera(bundle_.views[v], i, to_pose(state.poses[v]));
                 largest = std::max(largest, std::atan2(std::hypot(at.x, at.y), at.z));
             }
         }
@@ -267,7 +269,9 @@ class Fit {
     }
 
     [[nodiscard]] InputError undetermined(const std::string& what) const {
-        std::string help = "add views of the chart tilted by 20° or more and reaching into the corners";
+        const bool is_far = std::ranges::all_of(bundle_.views, &ChartView::is_far);
+        std::string help = is_far ? "add directions that are seen in the corners"
+                                  : "add views of the chart tilted by 20° or more and reaching into the corners";
         if (!options_.known_focal_px) {
             help += ", or state the focal length (--focal-length)";
         }
@@ -391,12 +395,16 @@ void check_input(const std::vector<ChartView>& views, int width, int height, con
                          " px: expected a positive length");
     }
     for (const ChartView& view : views) {
-        if (view.chart_mm.size() != view.image_px.size() || view.chart_mm.size() < 4) {
-            throw InputError(view.name + ": " + std::to_string(view.chart_mm.size()) + " chart points and " +
-                             std::to_string(view.image_px.size()) + " image points: expected as many, and at least 4");
+        const std::size_t features = view.chart_mm.size() + view.directions.size();
+        if (features != view.image_px.size() || features < 4 || (view.is_far() && !view.chart_mm.empty())) {
+            throw InputError(view.name + ": " + std::to_string(view.chart_mm.size()) + " chart points, " +
+                             std::to_string(view.directions.size()) + " directions and " +
+                             std::to_string(view.image_px.size()) +
+                             " image points: expected as many as of one of the others, and at least 4");
         }
-        for (std::size_t i = 0; i < view.chart_mm.size(); ++i) {
-            if (!std::isfinite(view.chart_mm[i].x + view.chart_mm[i].y + view.image_px[i].x + view.image_px[i].y)) {
+        for (std::size_t i = 0; i < features; ++i) {
+            const Vec3d at = in_camera(view, i, {});
+            if (!std::isfinite(at.x + at.y + at.z + view.image_px[i].x + view.image_px[i].y)) {
                 throw InputError(view.name + ": point " + std::to_string(i) + " is not finite");
             }
         }

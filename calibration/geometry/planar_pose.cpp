@@ -10,12 +10,16 @@
 
 namespace lensproof::calibration {
 
-Vec3d to_camera(const Pose& pose, const Vec2d& chart_mm) {
+Vec3d turned(const Pose& pose, const Vec3d& direction) {
     const double rotation[3] = {pose.rotation_rad.x, pose.rotation_rad.y, pose.rotation_rad.z};
-    const double point[3] = {chart_mm.x, chart_mm.y, 0.0};
+    const double from[3] = {direction.x, direction.y, direction.z};
     double rotated[3];
-    ceres::AngleAxisRotatePoint(rotation, point, rotated);
-    return Vec3d{rotated[0], rotated[1], rotated[2]} + pose.translation_mm;
+    ceres::AngleAxisRotatePoint(rotation, from, rotated);
+    return {rotated[0], rotated[1], rotated[2]};
+}
+
+Vec3d to_camera(const Pose& pose, const Vec2d& chart_mm) {
+    return turned(pose, {chart_mm.x, chart_mm.y, 0.0}) + pose.translation_mm;
 }
 
 std::optional<Pose> planar_pose(const std::vector<Vec2d>& chart_mm, const std::vector<Vec3d>& rays) {

@@ -15,6 +15,9 @@ struct Pose {
 
 Vec3d to_camera(const Pose& pose, const Vec2d& chart_mm);
 
+/// A direction by the pose's rotation alone.
+Vec3d turned(const Pose& pose, const Vec3d& direction);
+
 /// The pose that explains the unit directions `rays` (camera frame) to the points `chart_mm` of a flat chart.
 ///
 /// A linear solution: ray × (H X) = 0 for H = [r1 r2 t], least singular vector, then the nearest rotation (Zhang 2000,

@@ -148,8 +148,7 @@ std::vector<ChartView> used_points(const std::vector<ChartView>& views, const Ge
             ChartView{.name = views[v].name, .chart_mm = {}, .image_px = {}, .weight = fit.views[v].weight});
         for (const PointResidual& r : fit.views[v].residuals) {
             if (r.used) {
-                view.chart_mm.push_back(views[v].chart_mm[static_cast<std::size_t>(r.index)]);
-                view.image_px.push_back(views[v].image_px[static_cast<std::size_t>(r.index)]);
+                add_point(view, views[v], static_cast<std::size_t>(r.index));
             }
         }
     }
@@ -189,15 +188,17 @@ UncertaintyMap uncertainty_map(const GeometryFit& fit, const std::vector<ChartVi
     for (int j = 0; j < map.rows; ++j) {
         map.y_px.push_back((height_px - 1.0) * j / (map.rows - 1));
     }
+    const auto charts = static_cast<double>(std::ranges::count(views, false, &ChartView::is_far));
     for (std::size_t v = 0; v < views.size(); ++v) {
-        map.near_mm += length(chart_centre(views[v], fit.views[v].pose)) / static_cast<double>(views.size());
+        map.near_mm += views[v].is_far() ? 0.0 : length(chart_centre(views[v], fit.views[v].pose)) / charts;
     }
     std::vector<Vec2d> pixels;
     for (const double y : map.y_px) {
         for (const double x : map.x_px) {
             pixels.push_back({x, y});
             map.far_px.push_back(projection_uncertainty_px(fit, pixels.back()));
-            map.near_px.push_back(projection_uncertainty_px(fit, pixels.back(), map.near_mm));
+            map.near_px.push_back(charts > 0.0 ? projection_uncertainty_px(fit, pixels.back(), map.near_mm)
+                                               : std::nullopt);
         }
     }
     map.covered = covered_pixels(used_points(views, fit), pixels);

@@ -21,8 +21,8 @@ struct UncertaintyMap {
     int rows = 0;
     std::vector<double> x_px;  // of the columns
     std::vector<double> y_px;  // of the rows
-    double near_mm = 0.0;      // distance of the near points: the charts' mean
-    /// Row by row, for points at infinity and at `near_mm`; none where the model images nothing.
+    double near_mm = 0.0;      // distance of the near points: the charts' mean; 0 where all views are of directions
+    /// Row by row, for points at infinity and at `near_mm`; none where the model images nothing, or nothing is near.
     std::vector<std::optional<double>> far_px;
     std::vector<std::optional<double>> near_px;
     /// Inside the convex hull of the points used: elsewhere the model extrapolates.

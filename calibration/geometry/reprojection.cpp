@@ -68,13 +68,26 @@ class ReprojectionCost final : public ceres::CostFunction {
 
   private:
     template <class T>
+    Vec3<T> in_camera(const T* pose, const Vec3<T>& point) const {
+        const T from[3] = {point.x, point.y, point.z};
+        T turned[3];
+        ceres::AngleAxisRotatePoint(pose, from, turned);
+        if (feature_.direction) {
+            return {turned[0], turned[1], turned[2]};
+        }
+        return {turned[0] + pose[3], turned[1] + pose[4], turned[2] + pose[5]};
+    }
+
+    template <class T>
     bool predict(const T* intrinsics, const T* pose, const T* heights, Vec2<T>& predicted) const {
+        const auto image_of = [&](const Vec3<T>& point, Vec2<T>& pixel) {
+            return kProjections<T>[static_cast<std::size_t>(kind_)](intrinsics, in_camera(pose, point), pixel);
+        };
+        if (const auto& far = feature_.direction) {
+            return image_of({T(far->x), T(far->y), T(far->z)}, predicted);
+        }
         const auto map = [&](double x, double y, Vec2<T>& pixel) {
-            const T point[3] = {T(x), T(y), board_height(frame_, heights, x, y)};
-            T rotated[3];
-            ceres::AngleAxisRotatePoint(pose, point, rotated);
-            return kProjections<T>[static_cast<std::size_t>(kind_)](
-                intrinsics, Vec3<T>{rotated[0] + pose[3], rotated[1] + pose[4], rotated[2] + pose[5]}, pixel);
+            return image_of({T(x), T(y), board_height(frame_, heights, x, y)}, pixel);
         };
         const Vec2d& at = feature_.chart_mm;
         return feature_.disc_diameter_mm > 0.0 ? disc_centroid(map, at.x, at.y, feature_.disc_diameter_mm, predicted)
@@ -101,24 +114,20 @@ class ReprojectionCost final : public ceres::CostFunction {
         for (int i = 0; i < 6; ++i) {
             pose[i] = PointJet(blocks[1][i], i);
         }
-        const PointJet point[3] = {PointJet(at.x), PointJet(at.y),
-                                   PointJet(board_height(frame_, blocks[2], at.x, at.y), 6)};
-        PointJet turned[3];
-        ceres::AngleAxisRotatePoint(pose.data(), point, turned);
+        const auto& far = feature_.direction;
+        const Vec3<PointJet> point = far ? Vec3<PointJet>{PointJet(far->x), PointJet(far->y), PointJet(far->z)}
+                                         : Vec3<PointJet>{PointJet(at.x), PointJet(at.y),
+                                                          PointJet(board_height(frame_, blocks[2], at.x, at.y), 6)};
+        const Vec3<PointJet> put = in_camera(pose.data(), point);
         using Jet = ceres::Jet<double, stride>;  // by the point, and by the model
-        std::array<Jet, 3> seen;
-        for (int k = 0; k < 3; ++k) {
-            turned[k] += pose[3 + k];
-            seen[k] = Jet(turned[k].a, k);
-        }
         const int count = parameter_block_sizes()[0];
         std::array<Jet, kLargestModel> intrinsics;
         for (int i = 0; i < count; ++i) {
             intrinsics[i] = jacobians[0] != nullptr && i < stride - 3 ? Jet(blocks[0][i], 3 + i) : Jet(blocks[0][i]);
         }
         Vec2<Jet> image;
-        if (!kProjections<Jet>[static_cast<std::size_t>(kind_)](intrinsics.data(), Vec3<Jet>{seen[0], seen[1], seen[2]},
-                                                                image)) {
+        if (!kProjections<Jet>[static_cast<std::size_t>(kind_)](
+                intrinsics.data(), Vec3<Jet>{Jet(put.x.a, 0), Jet(put.y.a, 1), Jet(put.z.a, 2)}, image)) {
             return false;
         }
         residuals[0] = feature_.image_px.x - image.x.a;
@@ -126,7 +135,7 @@ class ReprojectionCost final : public ceres::CostFunction {
         for (int row = 0; row < 2; ++row) {
             const Jet& own = row == 0 ? image.x : image.y;
             const auto chained = [&](int i) {
-                return own.v[0] * turned[0].v[i] + own.v[1] * turned[1].v[i] + own.v[2] * turned[2].v[i];
+                return own.v[0] * put.x.v[i] + own.v[1] * put.y.v[i] + own.v[2] * put.z.v[i];
             };
             for (int i = 0; jacobians[0] != nullptr && i < std::min(count, stride - 3); ++i) {
                 jacobians[0][row * count + i] = -own.v[3 + i];

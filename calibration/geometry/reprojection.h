@@ -17,9 +17,10 @@ namespace lensproof::calibration {
 
 /// A feature as measured.
 struct Feature {
-    Vec2d chart_mm;
-    Vec2d image_px;
-    double disc_diameter_mm = 0.0;  // 0: a point; else the centroid of the disc's image
+    Vec2d chart_mm{};
+    Vec2d image_px{};
+    double disc_diameter_mm = 0.0;                  // 0: a point; else the centroid of the disc's image
+    std::optional<Vec3d> direction = std::nullopt;  // of what is infinitely far away, in place of a place on the chart
 };
 
 using PoseParameters = std::array<double, 6>;  // rotation vector, translation (mm)
@@ -34,7 +35,8 @@ std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const V
                              const std::optional<BoardShape>& board = std::nullopt);
 
 /// Measured minus predicted, px: two residuals of three blocks of parameters, the model's (as many as `kind` has), a
-/// pose's (6) and the board's heights (5). Fails where the model images nothing. One type serves every model.
+/// pose's (6; a direction turns with it and does not move) and the board's heights (5). Fails where the model images
+/// nothing. One type serves every model.
 std::unique_ptr<ceres::CostFunction> reprojection_cost(ModelKind kind, const Feature& feature, const BoardFrame& frame);
 
 }  // namespace lensproof::calibration

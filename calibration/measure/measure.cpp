@@ -44,6 +44,21 @@ Vec2d middle_px(const Observations& seen) {
     return {(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
 }
 
+/// A point of the fit as the profile has it.
+ProfilePoint profile_point(const PictureObservation& picture, const PointResidual& residual) {
+    const auto i = static_cast<std::size_t>(residual.index);
+    ProfilePoint point{.image_px = picture.points.image_px[i],
+                       .residual_px = residual.measured_minus_model_px,
+                       .used = residual.used,
+                       .standard_error_px = picture.point_errors_px[i]};
+    if (picture.points.is_far()) {
+        point.direction = picture.points.directions[i];
+    } else {
+        point.chart_mm = picture.points.chart_mm[i];
+    }
+    return point;
+}
+
 Geometry fit(const MeasureInput& input, const Observations& seen, const std::vector<ChartView>& charts) {
     GeometryOptions options = input.geometry;
     options.disc_diameter_mm = disc_diameter_mm(input.chart);
@@ -76,9 +91,7 @@ void add_geometry(Profile& profile, Observations& seen, const std::vector<ChartV
         picture.view->lines = straightness(picture.lines, geometry.model);
         picture.view->pose = fitted->pose;
         for (const PointResidual& r : fitted->residuals) {
-            const auto i = static_cast<std::size_t>(r.index);
-            picture.view->points.push_back({picture.points.chart_mm[i], picture.points.image_px[i],
-                                            r.measured_minus_model_px, r.used, picture.point_errors_px[i]});
+            picture.view->points.push_back(profile_point(picture, r));
         }
         ++fitted;
     }
@@ -96,9 +109,7 @@ void add_plane_distortion(Profile& profile, Observations& seen, const std::vecto
             continue;
         }
         for (const PointResidual& r : *residuals) {
-            const auto i = static_cast<std::size_t>(r.index);
-            picture.view->points.push_back({picture.points.chart_mm[i], picture.points.image_px[i],
-                                            r.measured_minus_model_px, r.used, picture.point_errors_px[i]});
+            picture.view->points.push_back(profile_point(picture, r));
         }
         ++residuals;
     }
@@ -136,6 +147,10 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
 // Measures the camera; of charts that do not tell it, what needs none. Returns the optical centre.
 Vec2d measure_geometry(Profile& profile, Observations& seen, const MeasureInput& input,
                        const std::vector<ChartView>& charts) {
+    const bool is_far = shows_directions(input);
+    if (is_far) {
+        check_handedness(charts, seen.width, seen.height);
+    }
     try {
         Geometry geometry = fit(input, seen, charts);
         add_geometry(profile, seen, charts, geometry.fit);
@@ -143,7 +158,7 @@ Vec2d measure_geometry(Profile& profile, Observations& seen, const MeasureInput&
         profile.geometry->choice = std::move(geometry.choice);
         return centre_px(profile.geometry->model);
     } catch (const InputError& e) {
-        if (input.model) {
+        if (input.model || is_far) {
             throw;
         }
         profile.not_measured[part::kGeometry] = e.what();

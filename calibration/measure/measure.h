@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/geometry/fit_geometry.h"
+#include "calibration/measure/known_directions.h"
 #include "calibration/profile/profile.h"
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart/chart.h"
@@ -14,8 +15,9 @@
 namespace lensproof::calibration {
 
 /// `edges`: what is to be measured is the edges in `MeasureInput::edges`, or whatever edges there are; no chart is
-/// looked for. `lines`: what is straight in the scene.
-enum class PictureRole { chart, flat_field, edges, lines };
+/// looked for. `lines`: what is straight in the scene. `directions`: stars, and whatever else is small, bright, far
+/// away and listed in `MeasureInput::directions`.
+enum class PictureRole { chart, flat_field, edges, lines, directions };
 
 /// A picture to measure. It is loaded when its turn comes and forgotten after, so a large set needs no large memory.
 struct Picture {
@@ -47,6 +49,7 @@ struct MeasureInput {
     std::function<void(double)> progress = nullptr;
     /// Where the focus stood in which picture (by name), mm, for field curvature; empty: not known.
     std::map<std::string, double> focus_position_mm;
+    KnownDirections directions = {};  // by the picture's name
 };
 
 /// Finds the chart, and fits camera model, chromatic shift, vignetting and sharpness.
@@ -57,6 +60,7 @@ struct MeasureInput {
 /// vignetting and sharpness.
 ///
 /// Straight lines of scenes, which no chart is looked for in, give distortion (calibration/lines/line_distortion.h).
+/// Known directions give what charts give of the camera, and the chromatic shift.
 ///
 /// A picture that cannot be loaded, is of another size or other channels than those before it, is the same as one
 /// before it, shows no chart, or shows it blurred, is left out; `pictures` in the profile says why. Vignetting comes

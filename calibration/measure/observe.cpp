@@ -1,5 +1,7 @@
 #include "calibration/measure/observe.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <numeric>
@@ -9,8 +11,10 @@
 
 #include "calibration/detection/detect.h"
 #include "calibration/detection/refine.h"
+#include "calibration/detection/star_place.h"
 #include "calibration/detection/working_copy.h"
 #include "calibration/lines/find_lines.h"
+#include "calibration/measure/find_directions.h"
 #include "calibration/picture/picture_quality.h"
 #include "engine/base/hash.h"
 #include "engine/base/parallel.h"
@@ -151,6 +155,55 @@ void observe_chart(Look& look, const formats::Image& image, const Picture& pictu
     observe_channels(look, image, picture, input, points);
 }
 
+// All channels; of a picture whose channels are alike, one.
+std::vector<int> channels_that_differ(const formats::Image& image) {
+    if (all_channels_alike(image)) {
+        return {reference_channel(image)};
+    }
+    std::vector<int> channels(static_cast<std::size_t>(image.channel_count()));
+    std::iota(channels.begin(), channels.end(), 0);
+    return channels;
+}
+
+// Each known direction's light, in the channel of the geometry and, of those found, in the others.
+void observe_directions(Look& look, const formats::Image& image, const Picture& picture, const MeasureInput& input) {
+    constexpr std::size_t kFewestDirections = 4;  // that a fit takes
+    PictureObservation& own = look.own;
+    const auto listed = input.directions.find(picture.name);
+    const int reference = reference_channel(image);
+    const SeenDirections found =
+        listed == input.directions.end() ? SeenDirections() : find_directions(image, reference, listed->second);
+    own.reference_channel = image.channels[reference];
+    own.points.name = picture.name;
+    for (const auto& [direction, place] : found.seen) {
+        own.points.directions.push_back(direction);
+        own.points.image_px.push_back(place.centre_px);
+        own.point_errors_px.push_back(place.standard_error_px);
+    }
+    for (const int channel : channels_that_differ(image)) {
+        for (const Vec2d& place : own.points.image_px) {
+            const auto other =
+                channel != reference ? locate_star(image, channel, place, kDirectionReach_px) : std::nullopt;
+            if (other) {
+                own.chromatic_pairs[image.channels[channel]].push_back({place, other->centre_px});
+            }
+        }
+    }
+    ProfileView& view = own.view.emplace();
+    view.image = picture.name;
+    view.found = found.seen.size() >= kFewestDirections;
+    const std::string missing = in_words(found);
+    if (!view.found) {
+        view.reason = fmt::format("{} of {} that are listed with a place, expected {} at least{}{}", found.seen.size(),
+                                  found.placed, kFewestDirections, missing.empty() ? "" : ": ", missing);
+    }
+    own.account.used = view.found;
+    own.account.reason = view.found ? picture.remark : view.reason;
+    if (view.found) {
+        own.account.reason += (picture.remark.empty() || missing.empty() ? "" : "; ") + missing;
+    }
+}
+
 // Throws InputError for a picture that is not to be used.
 formats::Image load(const Picture& picture) {
     if (!picture.left_out.empty()) {
@@ -169,25 +222,16 @@ std::string hash_of_pixels(const formats::Image& image) {
 }
 
 std::string role_name(PictureRole role) {
-    return role == PictureRole::chart   ? "chart"
-           : role == PictureRole::edges ? "edges"
-           : role == PictureRole::lines ? "lines"
-                                        : "flat field";
+    return role == PictureRole::chart        ? "chart"
+           : role == PictureRole::edges      ? "edges"
+           : role == PictureRole::lines      ? "lines"
+           : role == PictureRole::directions ? "directions"
+                                             : "flat field";
 }
 
 // A message without the picture's name, which stands beside it.
 std::string without_name(const std::string& message, const std::string& name) {
     return message.rfind(name + ": ", 0) == 0 ? message.substr(name.size() + 2) : message;
-}
-
-// All channels; of a picture whose channels are alike, one.
-std::vector<int> channels_that_differ(const formats::Image& image) {
-    if (all_channels_alike(image)) {
-        return {reference_channel(image)};
-    }
-    std::vector<int> channels(static_cast<std::size_t>(image.channel_count()));
-    std::iota(channels.begin(), channels.end(), 0);
-    return channels;
 }
 
 void observe_picture(Look& look, const Picture& picture, const MeasureInput& input) {
@@ -232,6 +276,10 @@ void observe_picture(Look& look, const Picture& picture, const MeasureInput& inp
         account.reason = account.used ? picture.remark : "no edge is a tenth of the diagonal long";
         return;
     }
+    if (picture.role == PictureRole::directions) {
+        observe_directions(look, image, picture, input);
+        return;
+    }
     for (int channel = 0; channel < image.channel_count() && picture.use_light; ++channel) {
         own.light[image.channels[channel]] = flat_field_samples(image, channel);
     }
@@ -251,7 +299,7 @@ PictureObservation not_looked_at(const Picture& picture) {
 
 void leave_out(PictureObservation& own, const Picture& picture, const MeasureInput& input, const std::string& reason) {
     own.account.reason = reason;
-    if (picture.role == PictureRole::chart && !shows_star(input)) {
+    if ((picture.role == PictureRole::chart && !shows_star(input)) || picture.role == PictureRole::directions) {
         own.view = ProfileView{.image = picture.name, .reason = reason, .traits = {}, .pose = {}, .points = {}};
     }
 }
@@ -319,6 +367,10 @@ bool shows_lines(const MeasureInput& input) {
     return std::ranges::any_of(input.pictures, [](const Picture& p) { return p.role == PictureRole::lines; });
 }
 
+bool shows_directions(const MeasureInput& input) {
+    return std::ranges::any_of(input.pictures, [](const Picture& p) { return p.role == PictureRole::directions; });
+}
+
 bool looks_for_charts(const Observations& seen) {
     return std::ranges::any_of(seen.pictures, [](const auto& picture) { return picture.view.has_value(); });
 }
@@ -353,11 +405,12 @@ Observations observe(const MeasureInput& input) {
 InputError none_usable(const MeasureInput& input, const Observations& seen) {
     constexpr std::size_t kMostNamed = 8;
     const std::size_t count = seen.pictures.size();
-    const std::string what = looks_for_charts(seen) ? "no " + describe(input.chart) + " found in any"
-                             : shows_star(input)    ? "no Siemens star measured in any"
-                             : shows_edges(input)   ? "no edge measured in any"
-                             : shows_lines(input)   ? "no long edge found in any"
-                                                    : "no flat field";
+    const std::string what = shows_directions(input)  ? "too few known directions are seen in any"
+                             : looks_for_charts(seen) ? "no " + describe(input.chart) + " found in any"
+                             : shows_star(input)      ? "no Siemens star measured in any"
+                             : shows_edges(input)     ? "no edge measured in any"
+                             : shows_lines(input)     ? "no long edge found in any"
+                                                      : "no flat field";
     std::string text =
         input.name + ": " + what + " of " + std::to_string(count) + (count == 1 ? " picture" : " pictures");
     for (std::size_t i = 0; i < std::min(count, kMostNamed); ++i) {

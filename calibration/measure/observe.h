@@ -19,7 +19,7 @@ namespace lensproof::calibration {
 struct PictureObservation {
     PictureAccount account;
     std::string pixels_hash;                            // empty where it could not be loaded
-    std::optional<ProfileView> view;                    // where a chart was looked for, and of one that was found:
+    std::optional<ProfileView> view;                    // where a chart or directions were looked for; if found:
     ChartView points;                                   // the features seen,
     std::vector<std::optional<Vec2d>> point_errors_px;  // their standard errors,
     std::vector<LinePoints> lines;                      // the points of lines,
@@ -56,6 +56,9 @@ bool shows_edges(const MeasureInput& input);
 
 /// Whether any picture is to show straight lines of a scene.
 bool shows_lines(const MeasureInput& input);
+
+/// Whether any picture is to show known directions.
+bool shows_directions(const MeasureInput& input);
 
 /// Whether the chart is a Siemens star, which has no points to measure a camera by.
 bool shows_star(const MeasureInput& input);

@@ -8,6 +8,10 @@ double ProfileGeometry::standard_error(std::size_t parameter) const {
     return std::sqrt(covariance[parameter * (parameters(model).size() + 1)]);
 }
 
+bool has_posed_chart(const ProfileView& view) {
+    return view.found && view.pose && !view.points.empty() && !view.points.front().direction;
+}
+
 double half_diagonal_px(const Profile& profile) {
     return 0.5 * std::hypot(profile.width_px, profile.height_px);
 }

@@ -59,16 +59,19 @@ struct ProfileGeometry {
 };
 
 struct ProfilePoint {
-    Vec2d chart_mm;
-    Vec2d image_px;
-    Vec2d residual_px;  // measured minus model
-    bool used = true;   // false: an outlier that the fit left out
+    Vec2d chart_mm{};
+    Vec2d image_px{};
+    Vec2d residual_px{};  // measured minus model
+    bool used = true;     // false: an outlier that the fit left out
     /// Of the measured place, along x and y, from the picture's noise (JSON key "standard_error_px",
     /// calibration/detection/refine.h); none where it is not known.
     std::optional<Vec2d> standard_error_px = std::nullopt;
+    /// In place of `chart_mm`, of what is infinitely far away: a unit vector in a frame that the view's rotation turns
+    /// into the camera's (JSON key "direction").
+    std::optional<Vec3d> direction = std::nullopt;
 };
 
-/// A picture in which a chart was looked for.
+/// A picture in which a chart was looked for, or known directions.
 struct ProfileView {
     std::string image;
     bool found = false;
@@ -83,6 +86,9 @@ struct ProfileView {
     /// calibration/profile/profile_line.h).
     std::vector<ProfileLine> lines = {};
 };
+
+/// Whether it has points of a chart whose place before the camera is known.
+bool has_posed_chart(const ProfileView& view);
 
 /// The terms of a fit, with their covariance (row by row, in the order of the names).
 struct FittedTerms {

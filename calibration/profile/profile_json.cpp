@@ -25,8 +25,11 @@ static void fields(JsonArchive& json, ProfileSource& source) {
 }
 
 static void fields(JsonArchive& json, ProfilePoint& point) {
-    json.field("chart_mm", point.chart_mm)
-        .field("image_px", point.image_px)
+    json.optional("direction", point.direction);
+    if (!point.direction) {
+        json.field("chart_mm", point.chart_mm);
+    }
+    json.field("image_px", point.image_px)
         .field("residual_px", point.residual_px)
         .field("used", point.used)
         .optional("standard_error_px", point.standard_error_px);

@@ -215,6 +215,10 @@ void add_self_test(Profile& profile, const MeasureInput& input) {
         profile.not_measured[part::kSelfTest] = "without a geometry there is nothing to simulate";
         return;
     }
+    if (std::ranges::none_of(profile.views, [](const ProfileView& view) { return view.traits.has_value(); })) {
+        profile.not_measured[part::kSelfTest] = "no picture shows a chart that could be simulated";
+        return;
+    }
     try {
         profile.self_test = self_test(input, profile);
     } catch (const InputError& e) {

@@ -108,7 +108,8 @@ int report(const std::vector<ComparedRow>& rows, const Json& curves, const std::
 /// How far the profile's points are from where the lens images them, beyond what measuring them leaves.
 std::optional<ComparedRow> points_row(const std::string& lens, const std::string& file,
                                       const calibration::Profile& profile, const CompareOptions& options) {
-    const bool has_points = profile.geometry && profile.pixel_pitch_um && !profile.views.empty();
+    const bool has_points =
+        profile.geometry && profile.pixel_pitch_um && std::ranges::any_of(profile.views, calibration::has_posed_chart);
     const auto found = has_points
                            ? calibration::prescribed_residual(
                                  formats::load_lens(lens), {file, profile},

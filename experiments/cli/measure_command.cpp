@@ -25,9 +25,10 @@ void add_sharpness_input(calibration::MeasureInput& input, const MeasureOptions&
     std::vector<std::string> names;
     for (calibration::Picture& picture : input.pictures) {
         if (picture.role == calibration::PictureRole::chart) {
-            picture.role = options.lines           ? calibration::PictureRole::lines
-                           : options.edges.empty() ? calibration::PictureRole::chart
-                                                   : calibration::PictureRole::edges;
+            picture.role = options.lines                 ? calibration::PictureRole::lines
+                           : !options.directions.empty() ? calibration::PictureRole::directions
+                           : options.edges.empty()       ? calibration::PictureRole::chart
+                                                         : calibration::PictureRole::edges;
             names.push_back(picture.name);
         }
     }
@@ -62,19 +63,49 @@ const OptionCheck kTransferOption{
     },
     "CURVE"};
 
-/// Without a chart there is no camera to be held or freed.
-void check_lines(const MeasureOptions& options) {
-    const std::vector<std::pair<const char*, bool>> of_charts = {
-        {"--chart", !options.chart.empty()},        {"--edge", !options.edges.empty()},
-        {"--model", options.model != "auto"},       {"--aspect", options.aspect != "square"},
-        {"--board-shape", options.fit_board_shape}, {"--focal-length", options.focal_length_mm > 0.0},
-        {"--fix-centre", options.fix_centre},       {"--focus-positions", !options.focus_positions_mm.empty()}};
-    for (const auto& [name, is_given] : of_charts) {
-        if (is_given) {
-            throw InputError(
-                fmt::format("{}: given with --lines, which looks for no chart: expected one of them", name));
+/// Lines know no camera that could be held or freed; directions know one, and no chart.
+void check_without_chart(const MeasureOptions& options) {
+    struct Option {
+        const char* name;
+        bool is_given;
+        bool is_of_cameras;
+    };
+    const Option of_charts[] = {{"--chart", !options.chart.empty(), false},
+                                {"--edge", !options.edges.empty(), false},
+                                {"--lines", options.lines && !options.directions.empty(), false},
+                                {"--each", options.each && !options.directions.empty(), false},
+                                {"--model", options.model != "auto", true},
+                                {"--aspect", options.aspect != "square", true},
+                                {"--board-shape", options.fit_board_shape, false},
+                                {"--focal-length", options.focal_length_mm > 0.0, true},
+                                {"--fix-centre", options.fix_centre, true},
+                                {"--focus-positions", !options.focus_positions_mm.empty(), false}};
+    for (const auto& [name, is_given, is_of_cameras] : of_charts) {
+        if (is_given && (options.directions.empty() || !is_of_cameras)) {
+            throw InputError(fmt::format("{}: given with {}, which looks for no chart: expected one of them", name,
+                                         options.directions.empty() ? "--lines" : "--directions"));
         }
     }
+}
+
+/// The table's, by the pictures' names here.
+calibration::KnownDirections directions_of(const std::string& file, const std::vector<calibration::Picture>& pictures) {
+    std::map<std::string, std::string> names;  // by the file's
+    std::vector<std::string> files;
+    for (const calibration::Picture& picture : pictures) {
+        if (picture.role == calibration::PictureRole::directions) {
+            files.push_back(std::filesystem::path(picture.name).filename().string());
+            if (!names.emplace(files.back(), picture.name).second) {
+                throw InputError(fmt::format("{}: there are two pictures of this name, which {} cannot tell apart",
+                                             files.back(), file));
+            }
+        }
+    }
+    calibration::KnownDirections directions;
+    for (auto& [name, own] : calibration::read_known_directions(file, files)) {
+        directions[names.at(name)] = std::move(own);
+    }
+    return directions;
 }
 
 int run_measure(const MeasureOptions& options) {
@@ -94,12 +125,12 @@ int run_measure(const MeasureOptions& options) {
         write_and_print(options, run_bands(options, source));
         return kDone;
     }
-    if (options.lines) {
-        check_lines(options);
+    if (options.lines || !options.directions.empty()) {
+        check_without_chart(options);
     } else if (options.chart.empty() == options.edges.empty()) {
         throw InputError(
-            "measure: expected --chart FILE, or of pictures without a chart --edge for sharpness or --lines for "
-            "distortion");
+            "measure: expected --chart FILE, or of pictures without a chart --edge for sharpness, --lines for "
+            "distortion or --directions FILE for a camera");
     }
     const scene::Chart chart = options.chart.empty() ? scene::Chart{} : chart_to_find(options.chart);
     const std::vector<std::filesystem::path> pictures = pictures_named(options.images);
@@ -154,6 +185,9 @@ calibration::MeasureInput measure_input(const MeasureOptions& options, const cal
         input.geometry.known_focal_px = options.focal_length_mm * 1e3 / *input.pixel_pitch_um;
     }
     add_sharpness_input(input, options);
+    if (!options.directions.empty()) {
+        input.directions = directions_of(options.directions, input.pictures);
+    }
     return input;
 }
 
@@ -207,6 +241,12 @@ void add_measure_command(Program& program) {
         .type_name("RECTANGLE");
     command.add_flag("--lines", options->lines,
                      "Instead of a chart: distortion from what is straight in the scene (buildings, frames, shelves)");
+    command
+        .add_option("--directions", options->directions,
+                    "Instead of a chart: CSV table of stars, or other small lights far away: x_px, y_px (of some) and "
+                    "right_ascension_deg, declination_deg (or azimuth_deg, altitude_deg; or dx, dy, dz), for several "
+                    "pictures also picture")
+        .type_name("FILE");
     command
         .add_option("--focus-positions", options->focus_positions_mm,
                     "Where the focus stood in each IMAGE, mm, for field curvature")

@@ -29,6 +29,7 @@ struct MeasureOptions {
     bool no_self_test = false;
     std::vector<std::string> edges;  // rectangles, or one "auto"
     bool lines = false;
+    std::string directions;  // a CSV table
     std::string plots_folder;
     bool each = false;
     std::vector<double> focus_positions_mm;
