@@ -87,6 +87,7 @@ HeightTable chief_ray_heights(const render::Camera& camera) {
         field = std::min(field, rays.back().largest_field());
     }
     std::vector<optics::ChiefRays> alone;
+    alone.reserve(kShownWavelengths_nm.size());
     for (const double nm : kShownWavelengths_nm) {
         alone.emplace_back(*camera.lens(), nm);
     }
