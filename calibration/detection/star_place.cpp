@@ -22,11 +22,14 @@ struct Window {
     int right = 0;   // the last column,
     int bottom = 0;  // the last row
 
-    Window(const formats::Image& image, const Vec2d& middle, double reach)
-        : left(std::max(0, static_cast<int>(std::ceil(middle.x - reach)))),
-          top(std::max(0, static_cast<int>(std::ceil(middle.y - reach)))),
-          right(std::min(image.width - 1, static_cast<int>(std::floor(middle.x + reach)))),
-          bottom(std::min(image.height - 1, static_cast<int>(std::floor(middle.y + reach)))) {}
+    /// The pixels within `reach` of `middle`, which is finite, along either axis.
+    Window(const formats::Image& image, const Vec2d& middle, double reach) {
+        const auto inside = [](double at, int pixels) { return static_cast<int>(std::clamp(at, -1.0, 1.0 * pixels)); };
+        left = std::max(0, inside(std::ceil(middle.x - reach), image.width));
+        top = std::max(0, inside(std::ceil(middle.y - reach), image.height));
+        right = std::min(image.width - 1, inside(std::floor(middle.x + reach), image.width));
+        bottom = std::min(image.height - 1, inside(std::floor(middle.y + reach), image.height));
+    }
 
     template <class Visit>
     void each(const Visit& visit) const {
@@ -107,6 +110,9 @@ Moments weighted(const formats::Image& image, int channel, const Vec2d& at, doub
 }  // namespace
 
 std::optional<StarPlace> locate_star(const formats::Image& image, int channel, const Vec2d& near_px, double reach_px) {
+    if (!std::isfinite(near_px.x + near_px.y)) {
+        return std::nullopt;
+    }
     const auto ground = sky_around(image, channel, Window(image, near_px, 2.0 * reach_px));
     auto at = ground ? brightest(image, channel, near_px, reach_px, *ground) : std::nullopt;
     double width = kUsual_px;

@@ -88,10 +88,8 @@ KnownDirections read_known_directions(const std::filesystem::path& file, const s
                                      table.where_header(), pictures.size()));
     }
     KnownDirections directions;
-    for (std::size_t count = 0; const std::optional<CsvRow> row = table.next();) {
-        if (++count > kMostDirections) {
-            row->fail("x_px", fmt::format("no more than {} directions", kMostDirections));
-        }
+    std::size_t count = 0;
+    while (const std::optional<CsvRow> row = table.next()) {
         const std::optional<double> x = row->optional_number("x_px");
         const std::optional<double> y = row->optional_number("y_px");
         if (x.has_value() != y.has_value()) {
@@ -102,7 +100,12 @@ KnownDirections read_known_directions(const std::filesystem::path& file, const s
             known.near_px = Vec2d{*x, *y};
         }
         const std::string picture = names_pictures ? row->text("picture") : pictures.front();
-        if (picture.empty() && !x) {
+        const bool is_in_all = picture.empty() && !x;
+        count += is_in_all ? pictures.size() : 1;
+        if (count > kMostDirections) {
+            row->fail("x_px", fmt::format("no more than {} directions in all pictures", kMostDirections));
+        }
+        if (is_in_all) {
             for (const std::string& every : pictures) {
                 directions[every].push_back(known);
             }

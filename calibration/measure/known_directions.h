@@ -19,7 +19,7 @@ struct KnownDirection {
 
 /// How far its light may be from `near_px`, px.
 inline constexpr double kDirectionReach_px = 8.0;
-inline constexpr std::size_t kMostDirections = 100000;  // ten times what the eye sees
+inline constexpr std::size_t kMostDirections = 100000;  // in all pictures together
 
 /// By picture.
 using KnownDirections = std::map<std::string, std::vector<KnownDirection>>;

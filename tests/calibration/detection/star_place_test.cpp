@@ -92,6 +92,7 @@ TEST(StarPlace, NoneWhereThereIsNone) {
     EXPECT_FALSE(locate_star(image, 0, {31.0, 31.0}, 8.0));
     EXPECT_FALSE(locate_star(sky(), 0, {31.0, 31.0}, 8.0));
     EXPECT_FALSE(locate_star(sky(), 0, {-500.0, 1e9}, 8.0));
+    EXPECT_FALSE(locate_star(sky(), 0, {1e300, -1e300}, 8.0));
     EXPECT_FALSE(locate_star(sky(), 0, {std::numeric_limits<double>::quiet_NaN(), 3.0}, 8.0));
     add_star(image, {31.0, 31.0}, 1.0, 2.0);
     image.at(33, 31, 0) = std::numeric_limits<float>::quiet_NaN();

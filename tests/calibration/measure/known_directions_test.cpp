@@ -68,6 +68,11 @@ TEST_F(KnownDirectionsTable, IsRefusedByFileLineAndColumn) {
     EXPECT_TRUE(says(refused("x_px,y_px,azimuth_deg,altitude_deg\n1,2,0,91\n"), "stars.csv:2: altitude_deg is \"91\""));
     EXPECT_TRUE(says(refused("x_px,y_px,dx,dy,dz,magnitude\n1,2,0,0,1,3\n"), "magnitude"));
     EXPECT_TRUE(says(refused("x_px,y_px,dx,dy,dz\n1,2,0,0,1\n", {"a.png", "b.png"}), "no column picture"));
+    std::string many = "picture,x_px,y_px,dx,dy,dz\n";
+    for (std::size_t i = 0; i <= kMostDirections / 2; ++i) {
+        many += ",,,0,0,1\n";
+    }
+    EXPECT_TRUE(says(refused(many, {"a.png", "b.png"}), "expected no more than 100000 directions in all pictures"));
     EXPECT_TRUE(says(refused("picture,x_px,y_px,dx,dy,dz\nmoon.png,1,2,0,0,1\n"),
                      "stars.csv:2: picture is \"moon.png\", expected the name of a picture that is given: night.png"));
 }
