@@ -56,7 +56,8 @@ class CameraPlots {
         begin({"chromatic-wavelengths", "Lateral colour by wavelength",
                "radial position of single wavelengths minus the green channel's", "shift", "px"});
         for (const std::string& channel : shown_wavelengths()) {
-            add_measured(kQuantities.chromatic_shift.key(channel), ", " + channel);
+            const std::string nm = channel.substr(0, channel.size() - 2);
+            add_measured(kQuantities.chromatic_shift.key(channel), fmt::format(", {} nm", nm));
         }
 
         begin({"sharpness", "Sharpness", "MTF50 along the radius (tangential) and across (sagittal), green", "MTF50",
