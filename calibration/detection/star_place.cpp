@@ -53,23 +53,23 @@ std::optional<Sky> sky_around(const formats::Image& image, int channel, const Wi
     if (lights.empty() || !std::ranges::all_of(lights, [](double light) { return std::isfinite(light); })) {
         return std::nullopt;
     }
-    Sky ground{.light = median(lights)};
+    Sky sky{.light = median(lights)};
     for (double& light : lights) {
-        light = std::abs(light - ground.light);
+        light = std::abs(light - sky.light);
     }
-    ground.noise = kSigmaPerMedian * median(lights);
-    return ground;
+    sky.noise = kSigmaPerMedian * median(lights);
+    return sky;
 }
 
 // The middle of the brightest 3 × 3 pixels.
 std::optional<Vec2d> brightest(const formats::Image& image, int channel, const Vec2d& near, double reach,
-                               const Sky& ground) {
+                               const Sky& sky) {
     Window inside(image, near, reach);
     inside.left = std::max(inside.left, 1);
     inside.top = std::max(inside.top, 1);
     inside.right = std::min(inside.right, image.width - 2);
     inside.bottom = std::min(inside.bottom, image.height - 2);
-    double most = ground.light + kStandsOut * ground.noise / 3.0;
+    double most = sky.light + kStandsOut * sky.noise / 3.0;
     std::optional<Vec2d> place;
     inside.each([&](int x, int y) {
         double sum = 0.0;
@@ -91,12 +91,12 @@ struct Moments {
     Vec2d squares;          // of what a pixel does to the sums of the centroid
 };
 
-Moments weighted(const formats::Image& image, int channel, const Vec2d& at, double width, const Sky& ground) {
+Moments weighted(const formats::Image& image, int channel, const Vec2d& at, double width, const Sky& sky) {
     Moments sums;
     Window(image, at, kCut * width).each([&](int x, int y) {
         const Vec2d d{x - at.x, y - at.y};
         const double weight = std::exp(-0.5 * dot(d, d) / (width * width));
-        const double light = weight * (image.at(x, y, channel) - ground.light);
+        const double light = weight * (image.at(x, y, channel) - sky.light);
         sums.light += light;
         sums.off = sums.off + light * d;
         sums.variance += 0.5 * light * dot(d, d);
@@ -113,11 +113,11 @@ std::optional<StarPlace> locate_star(const formats::Image& image, int channel, c
     if (!std::isfinite(near_px.x + near_px.y)) {
         return std::nullopt;
     }
-    const auto ground = sky_around(image, channel, Window(image, near_px, 2.0 * reach_px));
-    auto at = ground ? brightest(image, channel, near_px, reach_px, *ground) : std::nullopt;
+    const auto sky = sky_around(image, channel, Window(image, near_px, 2.0 * reach_px));
+    auto at = sky ? brightest(image, channel, near_px, reach_px, *sky) : std::nullopt;
     double width = kUsual_px;
     for (int round = 0; round < kStarRounds && at; ++round) {
-        const Moments sums = weighted(image, channel, *at, width, *ground);
+        const Moments sums = weighted(image, channel, *at, width, *sky);
         if (!(sums.light > 0.0)) {
             return std::nullopt;
         }
@@ -130,7 +130,7 @@ std::optional<StarPlace> locate_star(const formats::Image& image, int channel, c
         const double next = std::max(own, kNarrowest_px);
         if (length(step) < kStill_px && std::abs(next - width) < kStill_px) {
             const Vec2d error{std::sqrt(sums.squares.x), std::sqrt(sums.squares.y)};
-            return StarPlace{.centre_px = *at, .standard_error_px = (gain * ground->noise / sums.light) * error};
+            return StarPlace{.centre_px = *at, .standard_error_px = (gain * sky->noise / sums.light) * error};
         }
         at = *at + step;
         width = next;

@@ -40,13 +40,6 @@ ceres::Solver::Options solver_options() {
 
 }  // namespace
 
-Feature feature(const ChartView& view, std::size_t point, double disc_diameter_mm) {
-    if (view.is_far()) {
-        return {.image_px = view.image_px[point], .direction = view.directions[point]};
-    }
-    return {.chart_mm = view.chart_mm[point], .image_px = view.image_px[point], .disc_diameter_mm = disc_diameter_mm};
-}
-
 Vec3d in_camera(const ChartView& view, std::size_t point, const Pose& pose) {
     return view.is_far() ? turned(pose, view.directions[point]) : to_camera(pose, view.chart_mm[point]);
 }
@@ -76,6 +69,15 @@ PointBundle make_bundle(const std::vector<ChartView>& views, double disc_diamete
                         {0.5 * (high.x - low.x), 0.5 * (high.y - low.y)}};
     }
     return bundle;
+}
+
+Feature feature(const PointBundle& bundle, std::size_t view, std::size_t point) {
+    const ChartView& of = bundle.views[view];
+    if (of.is_far()) {
+        return {.image_px = of.image_px[point], .direction = of.directions[point]};
+    }
+    return {
+        .chart_mm = of.chart_mm[point], .image_px = of.image_px[point], .disc_diameter_mm = bundle.disc_diameter_mm};
 }
 
 int count_used(const PointBundle& bundle) {
@@ -123,10 +125,8 @@ double solve(const PointBundle& bundle, BundleState& state, const Held& held, do
         for (std::size_t i = 0; i < bundle.used[v].size(); ++i) {
             if (bundle.used[v][i]) {
                 problem.AddResidualBlock(
-                    reprojection_cost(kind(state.model), feature(bundle.views[v], i, bundle.disc_diameter_mm),
-                                      bundle.frame)
-                        .release(),
-                    loss, intrinsics.data(), state.poses[v].data(), state.heights.data());
+                    reprojection_cost(kind(state.model), feature(bundle, v, i), bundle.frame).release(), loss,
+                    intrinsics.data(), state.poses[v].data(), state.heights.data());
             }
         }
     }
@@ -139,8 +139,7 @@ double solve(const PointBundle& bundle, BundleState& state, const Held& held, do
 
 std::optional<Vec2d> residual(const PointBundle& bundle, const BundleState& state, std::size_t view,
                               std::size_t point) {
-    const auto cost =
-        reprojection_cost(kind(state.model), feature(bundle.views[view], point, bundle.disc_diameter_mm), bundle.frame);
+    const auto cost = reprojection_cost(kind(state.model), feature(bundle, view, point), bundle.frame);
     const std::vector<double> intrinsics = parameters(state.model);
     const double* blocks[3] = {intrinsics.data(), state.poses[view].data(), state.heights.data()};
     double values[2];

@@ -23,8 +23,6 @@ struct ChartView {
     [[nodiscard]] int pose_unknowns() const { return is_far() ? 3 : 6; }
 };
 
-Feature feature(const ChartView& view, std::size_t point, double disc_diameter_mm);
-
 /// Where the pose puts a point, in the camera's frame: mm, or a direction.
 Vec3d in_camera(const ChartView& view, std::size_t point, const Pose& pose);
 
@@ -41,6 +39,8 @@ struct PointBundle {
 
 /// The bundle of all points; the frame encloses them.
 PointBundle make_bundle(const std::vector<ChartView>& views, double disc_diameter_mm);
+
+Feature feature(const PointBundle& bundle, std::size_t view, std::size_t point);
 
 int count_used(const PointBundle& bundle);
 

@@ -46,8 +46,7 @@ ViewNormal view_normal(const PointBundle& bundle, const BundleState& state, cons
         if (!bundle.used[view][i]) {
             continue;
         }
-        const auto cost =
-            reprojection_cost(kind(state.model), feature(points, i, bundle.disc_diameter_mm), bundle.frame);
+        const auto cost = reprojection_cost(kind(state.model), feature(bundle, view, i), bundle.frame);
         const double* blocks[3] = {intrinsics.data(), state.poses[view].data(), state.heights.data()};
         double* jacobians[3] = {by_intrinsics.data(), by_pose.data(), by_heights.data()};
         double values[2];

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "calibration/geometry/bundle.h"
 #include "engine/base/vec.h"
 
 namespace lensproof::calibration {
@@ -32,9 +31,5 @@ using KnownDirections = std::map<std::string, std::vector<KnownDirection>>;
 /// at. x_px and y_px may both be empty, and so may `picture` then: a catalogue's, for every picture. `pictures`: the
 /// names that there are. Throws InputError naming file, line and column, also for a picture that is not among them.
 KnownDirections read_known_directions(const std::filesystem::path& file, const std::vector<std::string>& pictures);
-
-/// Throws InputError where the views would agree much better with their directions' mirror images: angles that were
-/// counted the other way round.
-void check_handedness(const std::vector<ChartView>& views, int width_px, int height_px);
 
 }  // namespace lensproof::calibration

@@ -9,6 +9,7 @@
 
 #include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/geometry/geometry_curves.h"
+#include "calibration/geometry/handedness.h"
 #include "calibration/geometry/model_choice.h"
 #include "calibration/geometry/plane_distortion.h"
 #include "calibration/light/light_gradient.h"
@@ -129,10 +130,13 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
         worst = std::max(worst, uncertainty.value_or(0.0));
     }
     if (worst > kUnknown * half_diagonal_px(profile)) {
+        const bool is_far = std::ranges::all_of(charts, &ChartView::is_far);
         profile.warnings.push_back(fmt::format(
             "the pictures do not say what the camera does in all of the frame: a place is known to ± {:.3g} px "
-            "at worst; add views of the chart that reach into the corners, tilted by 20° or more",
-            worst));
+            "at worst; add {}",
+            worst,
+            is_far ? "directions that are seen in the corners"
+                   : "views of the chart that reach into the corners, tilted by 20° or more"));
     }
     for (std::size_t v = 0; v < charts.size(); ++v) {
         if (geometry.views[v].weight < 1.0) {
@@ -147,7 +151,7 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
 // Measures the camera; of charts that do not tell it, what needs none. Returns the optical centre.
 Vec2d measure_geometry(Profile& profile, Observations& seen, const MeasureInput& input,
                        const std::vector<ChartView>& charts) {
-    const bool is_far = shows_directions(input);
+    const bool is_far = has_role(input, PictureRole::directions);
     if (is_far) {
         check_handedness(charts, seen.width, seen.height);
     }
@@ -262,8 +266,8 @@ Profile measure(const MeasureInput& input) {
     const bool is_sharp = !seen.sharpness.edges.empty() || !seen.sharpness.stars.empty();
     const bool has_lines =
         std::ranges::any_of(seen.pictures, [](const auto& picture) { return !picture.scene_lines.empty(); });
-    if (charts.empty() &&
-        (looks_for_charts(seen) || (shows_lines(input) && !has_lines) || !(is_lit || is_sharp || has_lines))) {
+    if (charts.empty() && (looks_for_charts(seen) || (has_role(input, PictureRole::lines) && !has_lines) ||
+                           !(is_lit || is_sharp || has_lines))) {
         throw none_usable(input, seen);
     }
     Profile profile;
@@ -282,9 +286,9 @@ Profile measure(const MeasureInput& input) {
     if (has_lines) {
         centre = measure_lines(profile, seen);
     } else if (charts.empty()) {
-        profile.not_measured[part::kGeometry] = shows_star(input)    ? "a Siemens star has but one point"
-                                                : shows_edges(input) ? "there is no chart"
-                                                                     : "there are flat fields only";
+        profile.not_measured[part::kGeometry] = shows_star(input) ? "a Siemens star has but one point"
+                                                : has_role(input, PictureRole::edges) ? "there is no chart"
+                                                                                      : "there are flat fields only";
     } else {
         centre = measure_geometry(profile, seen, input, charts);
     }

@@ -359,16 +359,8 @@ bool shows_star(const MeasureInput& input) {
     return std::holds_alternative<scene::SiemensStar>(input.chart.pattern);
 }
 
-bool shows_edges(const MeasureInput& input) {
-    return std::ranges::any_of(input.pictures, [](const Picture& p) { return p.role == PictureRole::edges; });
-}
-
-bool shows_lines(const MeasureInput& input) {
-    return std::ranges::any_of(input.pictures, [](const Picture& p) { return p.role == PictureRole::lines; });
-}
-
-bool shows_directions(const MeasureInput& input) {
-    return std::ranges::any_of(input.pictures, [](const Picture& p) { return p.role == PictureRole::directions; });
+bool has_role(const MeasureInput& input, PictureRole role) {
+    return std::ranges::count(input.pictures, role, &Picture::role) > 0;
 }
 
 bool looks_for_charts(const Observations& seen) {
@@ -405,12 +397,12 @@ Observations observe(const MeasureInput& input) {
 InputError none_usable(const MeasureInput& input, const Observations& seen) {
     constexpr std::size_t kMostNamed = 8;
     const std::size_t count = seen.pictures.size();
-    const std::string what = shows_directions(input)  ? "too few known directions are seen in any"
-                             : looks_for_charts(seen) ? "no " + describe(input.chart) + " found in any"
-                             : shows_star(input)      ? "no Siemens star measured in any"
-                             : shows_edges(input)     ? "no edge measured in any"
-                             : shows_lines(input)     ? "no long edge found in any"
-                                                      : "no flat field";
+    const std::string what = has_role(input, PictureRole::directions) ? "too few known directions are seen in any"
+                             : looks_for_charts(seen)                 ? "no " + describe(input.chart) + " found in any"
+                             : shows_star(input)                      ? "no Siemens star measured in any"
+                             : has_role(input, PictureRole::edges)    ? "no edge measured in any"
+                             : has_role(input, PictureRole::lines)    ? "no long edge found in any"
+                                                                      : "no flat field";
     std::string text =
         input.name + ": " + what + " of " + std::to_string(count) + (count == 1 ? " picture" : " pictures");
     for (std::size_t i = 0; i < std::min(count, kMostNamed); ++i) {

@@ -51,14 +51,8 @@ InputError none_usable(const MeasureInput& input, const Observations& seen);
 /// Whether a chart was looked for in any picture.
 bool looks_for_charts(const Observations& seen);
 
-/// Whether any picture is to show edges without a chart.
-bool shows_edges(const MeasureInput& input);
-
-/// Whether any picture is to show straight lines of a scene.
-bool shows_lines(const MeasureInput& input);
-
-/// Whether any picture is to show known directions.
-bool shows_directions(const MeasureInput& input);
+/// Whether any picture has that role.
+bool has_role(const MeasureInput& input, PictureRole role);
 
 /// Whether the chart is a Siemens star, which has no points to measure a camera by.
 bool shows_star(const MeasureInput& input);

@@ -20,7 +20,8 @@ namespace lensproof::cli {
 
 namespace {
 
-void add_sharpness_input(calibration::MeasureInput& input, const MeasureOptions& options) {
+/// What the pictures but the flat fields are to show, and where the focus stood in them.
+void set_roles(calibration::MeasureInput& input, const MeasureOptions& options) {
     input.edges = parse_edges(options.edges);
     std::vector<std::string> names;
     for (calibration::Picture& picture : input.pictures) {
@@ -184,7 +185,7 @@ calibration::MeasureInput measure_input(const MeasureOptions& options, const cal
         }
         input.geometry.known_focal_px = options.focal_length_mm * 1e3 / *input.pixel_pitch_um;
     }
-    add_sharpness_input(input, options);
+    set_roles(input, options);
     if (!options.directions.empty()) {
         input.directions = directions_of(options.directions, input.pictures);
     }

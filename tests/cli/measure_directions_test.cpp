@@ -150,7 +150,8 @@ max_bounces = 0
 }
 
 // Light paths through the lens's surfaces to a picture, its spots to a camera, and that beside the lens's own chief
-// rays: 0.02 px and 0.004 % were found, the errors are 0.015 px and 0.016 %.
+// rays: 0.020 ± 0.015 px, 0.004 ± 0.016 % and 0.0011 ± 0.0005 px of colour were found, and three errors more are let
+// pass. Another double Gauss of 50 mm does not.
 TEST(MeasureDirections, LampsThroughALensTellTheLens) {
     const Workplace place;
     write_file(place.path() / "sky.csv", write_sky(place));
@@ -161,10 +162,42 @@ TEST(MeasureDirections, LampsThroughALensTellTheLens) {
     const Outcome outcome = place.run({"measure", "sky.exr", "--directions", "sky.csv", "--kind", "render",
                                        "--pixel-pitch", "40", "--model", "brown-conrady", "-o", "profile.json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const Outcome compared =
-        place.run({"compare", "double-gauss-tronnier", "profile.json", "--f-number", "16", "--position-limit", "0.1",
-                   "--distortion-limit", "0.05", "--chromatic-limit", "0.02"});
-    EXPECT_EQ(compared.status, 0) << compared.out << compared.err;
+    const auto compared_with = [&](const std::string& lens) {
+        return place.run({"compare", lens, "profile.json", "--f-number", "16", "--position-limit", "0.065",
+                          "--distortion-limit", "0.052", "--chromatic-limit", "0.0026"});
+    };
+    const Outcome own = compared_with("double-gauss-tronnier");
+    EXPECT_EQ(own.status, 0) << own.out << own.err;
+    EXPECT_EQ(compared_with("double-gauss-angenieux").status, 1);
+}
+
+// The summer triangle and its neighbours through a camera of 1000 px: north is up, and so east, to which right
+// ascension grows, left. All of them lie in a strip of the frame, which the profile says.
+TEST(MeasureDirections, TheSkyIsNotMirrored) {
+    const Workplace place;
+    struct Star {
+        double right_ascension_deg, declination_deg;
+        Vec2d at_px;
+    };
+    const Star stars[] = {{279.235, 38.784, {985.42, 286.86}}, {310.358, 45.280, {562.97, 170.93}},
+                          {297.696, 8.868, {718.54, 846.33}},  {292.680, 27.960, {800.72, 499.50}},
+                          {305.557, 40.257, {618.59, 275.01}}, {284.736, 32.690, {916.85, 408.52}},
+                          {296.565, 10.613, {739.34, 812.62}}};
+    formats::Image image = formats::make_image(1500, 1000, {"Y"});
+    std::ranges::fill(image.pixels, 0.01F);
+    std::string table = "x_px,y_px,right_ascension_deg,declination_deg\n";
+    for (const Star& star : stars) {
+        add_star(image, 0, star.at_px, 0.5);
+        table += fmt::format("{:.0f},{:.0f},{},{}\n", star.at_px.x, star.at_px.y, star.right_ascension_deg,
+                             star.declination_deg);
+    }
+    formats::write_png_16(image, place.path() / "night.png");
+    write_file(place.path() / "stars.csv", table);
+    const Outcome outcome =
+        place.run({"measure", "night.png", "--directions", "stars.csv", "--model", "brown-conrady", "--fix-centre"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(says(outcome.out, "7 points in 1 views"));
+    EXPECT_TRUE(says(outcome.out, "px at worst; add directions that are seen in the corners"));
 }
 
 TEST(MeasureDirections, WhatIsNotSeenIsSaid) {

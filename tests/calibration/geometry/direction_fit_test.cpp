@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "calibration/geometry/handedness.h"
 #include "calibration/geometry/model_choice.h"
 #include "calibration/geometry/projection_uncertainty.h"
 #include "engine/base/angle.h"
@@ -41,7 +42,7 @@ TEST(DirectionFit, ExactDirectionsGiveBackTheCamera) {
     EXPECT_EQ(length(fit.views[0].pose.translation_mm), 0.0);
 }
 
-TEST(DirectionFit, AndTheFisheyeBeyond90Degrees) {
+TEST(DirectionFit, ExactDirectionsGiveBackTheFisheyeBeyond90Degrees) {
     const KannalaBrandt truth = fisheye_camera();
     const ChartView view = starry_view(truth, kAnyhow, kWidth, kHeight, 80, 2);
     double widest = 0.0;
@@ -137,7 +138,9 @@ TEST(DirectionFit, TheMapKnowsNothingNear) {
     EXPECT_EQ(map.near_mm, 0.0);
 }
 
-// One picture is cross-validated by its points, and the model is chosen as with charts.
+// One picture is cross-validated by its points, and the model is chosen as with charts. The rms of 300 coordinates is
+// known to 4 %; where directions are imaged is off by four errors at most, and by a twentieth of a pixel that a model
+// with fewer terms than the truth may not express.
 TEST(DirectionFit, AModelIsChosen) {
     ChartView view = starry_view(fisheye_camera(), kAnyhow, kWidth, kHeight, 150, 9);
     blur(view, 0.2, 10);
@@ -158,6 +161,18 @@ TEST(DirectionFit, TooFewAreRefused) {
     };
     EXPECT_TRUE(says(complaint(3), "3 directions and 3 image points"));
     EXPECT_TRUE(says(complaint(5), "5 points in 1 views cannot determine 11 unknowns"));
+}
+
+TEST(DirectionFit, MirroredOnesAreNamed) {
+    for (const CameraModel& camera : {CameraModel(perspective_camera()), CameraModel(fisheye_camera())}) {
+        ChartView view = starry_view(camera, kAnyhow, kWidth, kHeight, 20, 1);
+        EXPECT_EQ(complaint_about([&] { check_handedness({view}, kWidth, kHeight); }), "");
+        for (Vec3d& direction : view.directions) {
+            direction.x = -direction.x;
+        }
+        EXPECT_TRUE(
+            says(complaint_about([&] { check_handedness({view}, kWidth, kHeight); }), "the directions are mirrored"));
+    }
 }
 
 }  // namespace lensproof::calibration::direction_fit_test

@@ -3,13 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/write_file.h"
-#include "tests/calibration/geometry/starry_view.h"
 #include "tests/complaint.h"
 #include "tests/test_folder.h"
 
 namespace lensproof::calibration::known_directions_test {
-
-using namespace synthetic;
 
 class KnownDirectionsTable : public testing::Test {
   protected:
@@ -75,17 +72,6 @@ TEST_F(KnownDirectionsTable, IsRefusedByFileLineAndColumn) {
     EXPECT_TRUE(says(refused(many, {"a.png", "b.png"}), "expected no more than 100000 directions in all pictures"));
     EXPECT_TRUE(says(refused("picture,x_px,y_px,dx,dy,dz\nmoon.png,1,2,0,0,1\n"),
                      "stars.csv:2: picture is \"moon.png\", expected the name of a picture that is given: night.png"));
-}
-
-TEST_F(KnownDirectionsTable, MirroredOnesAreNamed) {
-    for (const CameraModel& camera : {CameraModel(perspective_camera()), CameraModel(fisheye_camera())}) {
-        ChartView view = starry_view(camera, {.rotation_rad = {0.3, 1.2, -0.4}, .translation_mm = {}}, 640, 480, 20, 1);
-        EXPECT_EQ(complaint_about([&] { check_handedness({view}, 640, 480); }), "");
-        for (Vec3d& direction : view.directions) {
-            direction.x = -direction.x;
-        }
-        EXPECT_TRUE(says(complaint_about([&] { check_handedness({view}, 640, 480); }), "the directions are mirrored"));
-    }
 }
 
 }  // namespace lensproof::calibration::known_directions_test
