@@ -1,8 +1,10 @@
 // engine/base/pack.h — several numbers in step, as a number type for the tracer.
 #pragma once
+#include <array>
 #include <experimental/simd>
 
 #include "engine/base/gather.h"
+#include "engine/base/look_up.h"
 
 namespace lensproof {
 
@@ -92,6 +94,7 @@ class Pack {
     friend Mask operator<=(const Pack& a, const Pack& b) { return Mask(a.lanes_ <= b.lanes_); }
     friend Mask operator>=(const Pack& a, const Pack& b) { return Mask(a.lanes_ >= b.lanes_); }
 
+    friend Pack whole(const Pack& a) { return Pack(std::experimental::trunc(a.lanes_)); }
     friend Pack abs(const Pack& a) { return Pack(std::experimental::abs(a.lanes_)); }
     friend Pack sqrt(const Pack& a) { return Pack(std::experimental::sqrt(a.lanes_)); }
 
@@ -104,6 +107,20 @@ class Pack {
 
   private:
     Lanes lanes_{};
+};
+
+template <class Scalar, class Abi>
+class Index<Pack<Scalar, Abi>> {
+  public:
+    explicit Index(const Pack<Scalar, Abi>& number) { number.store(at_.data()); }
+
+    template <class Entry>
+    [[nodiscard]] Pack<Scalar, Abi> look_up(const Entry* table) const {
+        return Pack<Scalar, Abi>::gather(table, at_.data());
+    }
+
+  private:
+    alignas(64) std::array<std::int32_t, Pack<Scalar, Abi>::kLanes> at_;
 };
 
 }  // namespace lensproof

@@ -16,18 +16,18 @@ concept Packet = !std::same_as<MaskOf<T>, bool>;
 
 /// `a` where `mask` holds, else `b`. Packets overload it with a blend.
 template <class T>
-T select(bool mask, const T& a, const T& b) {
+constexpr T select(bool mask, const T& a, const T& b) {
     return mask ? a : b;
 }
 
 template <Packet T>
-Vec3<T> select(const MaskOf<T>& mask, const Vec3<T>& a, const Vec3<T>& b) {
+constexpr Vec3<T> select(const MaskOf<T>& mask, const Vec3<T>& a, const Vec3<T>& b) {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
 /// Puts `value` into `to` where `mask` holds. For what is too large to be copied for a choice.
 template <class T>
-void assign_where(bool mask, T& to, const T& value) {
+constexpr void assign_where(bool mask, T& to, const T& value) {
     if (mask) {
         to = value;
     }

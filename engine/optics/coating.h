@@ -8,21 +8,31 @@
 
 namespace lensproof::optics {
 
+/// A layer at one wavelength.
+template <class T>
+struct TraceLayer {
+    T index;              // n of the complex index n + iκ
+    T thickness;          // in vacuum wavelengths
+    T extinction = T(0);  // κ, 0 or above: a wave fades as e^{−2πκ z/λ}
+};
+
+template <class T>
+using TraceLayers = std::vector<TraceLayer<T>>;
+
 /// A coating at one wavelength: layers from the scene's side to the sensor's, or a stated reflectance in their place,
 /// which then holds at every angle from which light passes. Of a mirror in the sequence of surfaces, what it reflects
 /// is what goes on through the lens, so that counts as transmitted.
-template <class T>
+///
+/// Layers: a vector, or a span of someone else's.
+template <class T, class Layers = TraceLayers<T>>
 struct TraceCoating {
-    struct Layer {
-        T index;              // n of the complex index n + iκ
-        T thickness;          // in vacuum wavelengths
-        T extinction = T(0);  // κ, 0 or above: a wave fades as e^{−2πκ z/λ}
-    };
-    std::vector<Layer> layers;
+    using Layer = TraceLayer<T>;
+
+    Layers layers;
     std::optional<T> reflectance;
     bool is_mirror = false;  // of the stated reflectance, or of 1
 
-    [[nodiscard]] bool is_bare() const { return layers.empty() && !reflectance && !is_mirror; }
+    [[nodiscard]] constexpr bool is_bare() const { return layers.empty() && !reflectance && !is_mirror; }
 };
 
 /// The shares of a wave's power that a coated surface sends back and on; the layers keep the rest.
@@ -31,7 +41,7 @@ struct CoatedPowers {
     T reflected;
     T transmitted;
 
-    [[nodiscard]] T absorbed() const { return T(1) - reflected - transmitted; }
+    [[nodiscard]] constexpr T absorbed() const { return T(1) - reflected - transmitted; }
 };
 
 /// Both polarisations' powers. Their mean is what becomes of unpolarised light.
@@ -40,7 +50,7 @@ struct PolarisedPowers {
     CoatedPowers<T> s;
     CoatedPowers<T> p;
 
-    [[nodiscard]] CoatedPowers<T> unpolarised() const {
+    [[nodiscard]] constexpr CoatedPowers<T> unpolarised() const {
         return {(s.reflected + p.reflected) / T(2), (s.transmitted + p.transmitted) / T(2)};
     }
 };
@@ -59,7 +69,7 @@ struct CoatedAmplitudes {
 
 /// The product of finite numbers: std::complex's own looks for infinities, which takes longer than the product.
 template <class T>
-std::complex<T> times(const std::complex<T>& a, const std::complex<T>& b) {
+constexpr std::complex<T> times(const std::complex<T>& a, const std::complex<T>& b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
@@ -75,7 +85,7 @@ struct LayerWave {
 };
 
 template <class T>
-LayerWave<T> layer_wave(const std::complex<T>& q_squared, const T& phase_by_q) {
+constexpr LayerWave<T> layer_wave(const std::complex<T>& q_squared, const T& phase_by_q) {
     using std::cos;
     using std::exp;
     using std::expm1;
@@ -115,11 +125,11 @@ struct StackFields {
     T eta_near;
     std::complex<T> eta_far;
 
-    [[nodiscard]] std::complex<T> incoming() const { return eta_near * first + second; }  // times 2 η_near
-    [[nodiscard]] std::complex<T> outgoing() const { return eta_near * first - second; }
-    [[nodiscard]] std::complex<T> reflected() const { return outgoing() / incoming(); }
-    [[nodiscard]] std::complex<T> transmitted() const { return T(2) * eta_near * scale / incoming(); }
-    [[nodiscard]] CoatedPowers<T> powers() const {
+    [[nodiscard]] constexpr std::complex<T> incoming() const { return eta_near * first + second; }  // times 2 η_near
+    [[nodiscard]] constexpr std::complex<T> outgoing() const { return eta_near * first - second; }
+    [[nodiscard]] constexpr std::complex<T> reflected() const { return outgoing() / incoming(); }
+    [[nodiscard]] constexpr std::complex<T> transmitted() const { return T(2) * eta_near * scale / incoming(); }
+    [[nodiscard]] constexpr CoatedPowers<T> powers() const {
         const T incoming_power = std::norm(incoming());
         return {.reflected = std::norm(outgoing()) / incoming_power,
                 .transmitted = T(4) * eta_near * eta_far.real() * scale / incoming_power * scale};
@@ -138,9 +148,9 @@ struct PolarisedFields {
 /// A layer's matrix is [cos φ, −i sin φ / η; −i η sin φ, cos φ] on (first, second), applied to (1, η_far) from the far
 /// side on (Abelès 1950; Macleod, Thin-Film Optical Filters, 4th ed., §2.4, with κ and i of the other sign). Going
 /// back, the wave that fades in the layers grows and the others' rounding errors fade; what it grows by is kept apart.
-template <class T>
-PolarisedFields<T> stack_fields(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
-                                bool from_scene_side) {
+template <class T, class Layers = TraceLayers<T>>
+constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
+                                          const T& cos_incidence, bool from_scene_side) {
     using std::abs;
     using std::acos;
     using std::sqrt;
@@ -158,7 +168,7 @@ PolarisedFields<T> stack_fields(const TraceCoating<T>& coating, const T& n1, con
     const T two_pi = T(2) * acos(T(-1));  // in every number type
     const std::size_t count = coating.layers.size();
     for (std::size_t i = 0; i < count; ++i) {
-        const typename TraceCoating<T>::Layer& layer = coating.layers[from_scene_side ? count - 1 - i : i];
+        const TraceLayer<T>& layer = coating.layers[from_scene_side ? count - 1 - i : i];
         const T& n = layer.index;
         const T& kappa = layer.extinction;
         const Complex n_squared((n - kappa) * (n + kappa), T(2) * n * kappa);
@@ -186,7 +196,7 @@ PolarisedFields<T> stack_fields(const TraceCoating<T>& coating, const T& n1, con
 
 /// Whether light from that side gets through at all, or is reflected totally by the medium behind the coating.
 template <class T>
-bool is_beyond_critical(const T& n1, const T& n2, const T& cos_incidence, bool from_scene_side) {
+constexpr bool is_beyond_critical(const T& n1, const T& n2, const T& cos_incidence, bool from_scene_side) {
     const T& near = from_scene_side ? n1 : n2;
     const T& far = from_scene_side ? n2 : n1;
     return (far - near) * (far + near) + near * near * cos_incidence * cos_incidence <= T(0);
@@ -195,9 +205,9 @@ bool is_beyond_critical(const T& n1, const T& n2, const T& cos_incidence, bool f
 /// The shares of power for light that meets a surface between `n1` on the scene's side and `n2` on the sensor's, coming
 /// from either at an angle of cosine `cos_incidence` (in its own medium, above 0). Beyond the critical angle nothing is
 /// transmitted, and what layers without absorption reflect is 1. Without layers these are Fresnel's.
-template <class T>
-PolarisedPowers<T> coating_powers(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
-                                  bool from_scene_side) {
+template <class T, class Layers = TraceLayers<T>>
+constexpr PolarisedPowers<T> coating_powers(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
+                                            const T& cos_incidence, bool from_scene_side) {
     if (coating.is_mirror) {
         const CoatedPowers<T> powers{.reflected = T(0), .transmitted = coating.reflectance.value_or(T(1))};
         return {powers, powers};
@@ -212,23 +222,23 @@ PolarisedPowers<T> coating_powers(const TraceCoating<T>& coating, const T& n1, c
 }
 
 /// Of unpolarised light.
-template <class T>
-T coating_transmittance(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
-                        bool from_scene_side) {
+template <class T, class Layers = TraceLayers<T>>
+constexpr T coating_transmittance(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
+                                  const T& cos_incidence, bool from_scene_side) {
     return coating_powers(coating, n1, n2, cos_incidence, from_scene_side).unpolarised().transmitted;
 }
 
-template <class T>
-T coating_reflectance(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
-                      bool from_scene_side) {
+template <class T, class Layers = TraceLayers<T>>
+constexpr T coating_reflectance(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
+                                const T& cos_incidence, bool from_scene_side) {
     return coating_powers(coating, n1, n2, cos_incidence, from_scene_side).unpolarised().reflected;
 }
 
 /// Amplitudes in the place of powers. A stated reflectance gives their moduli, the bare surface their phases. A
 /// mirror's are those of a perfect conductor: in space that is unfolded at it both polarisations go on alike.
-template <class T>
-CoatedAmplitudes<T> coating_amplitudes(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
-                                       bool from_scene_side) {
+template <class T, class Layers = TraceLayers<T>>
+constexpr CoatedAmplitudes<T> coating_amplitudes(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
+                                                 const T& cos_incidence, bool from_scene_side) {
     using std::sqrt;
     if (coating.is_mirror) {
         const std::complex<T> passing(sqrt(coating.reflectance.value_or(T(1))));

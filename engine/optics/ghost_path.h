@@ -25,7 +25,7 @@ struct StrayMirrors {
 
 /// Whether reflections at a surface are those of the stop's blades.
 template <class T>
-bool reflects_by_blades(const TraceSurface<T>& surface) {
+constexpr bool reflects_by_blades(const TraceSurface<T>& surface) {
     return surface.is_stop && surface.index_before == surface.index_after;
 }
 
@@ -41,19 +41,23 @@ struct TravellingRay {
     RayStatus status = RayStatus::ok;
     int surface = -1;  // where the status befell it
 
-    [[nodiscard]] Ray<T> global() const { return {{origin.x, origin.y, origin.z + last_vertex_z}, direction}; }
+    [[nodiscard]] constexpr Ray<T> global() const {
+        return {{origin.x, origin.y, origin.z + last_vertex_z}, direction};
+    }
 
-    void cross(const TraceLens<T>& lens, int towards, bool forward, const T& distance) {
+    template <class OfLens>
+    constexpr void cross(const OfLens& lens, int towards, bool forward, const T& distance) {
         if (!lens.attenuation.empty()) {
             optical_depth = optical_depth + lens.attenuation_towards(towards, forward) * distance;
         }
     }
 
-    [[nodiscard]] T transmittance(const TraceLens<T>& lens) const {
+    template <class OfLens>
+    [[nodiscard]] constexpr T transmittance(const OfLens& lens) const {
         return lens.attenuation.empty() ? at_surfaces : T(at_surfaces * fading(optical_depth));
     }
 
-    void end(RayStatus why, int at) {
+    constexpr void end(RayStatus why, int at) {
         status = why;
         surface = at;
     }
@@ -62,8 +66,8 @@ struct TravellingRay {
 enum class AtSurface { pass, reflect };
 
 /// Takes the ray to the sensor's plane and back from it; false where it does not meet it.
-template <class T>
-bool reflect_at_sensor(const TraceLens<T>& lens, const StrayMirrors<T>& mirrors, TravellingRay<T>& ray) {
+template <class OfLens, class T>
+constexpr bool reflect_at_sensor(const OfLens& lens, const StrayMirrors<T>& mirrors, TravellingRay<T>& ray) {
     const int sensor = static_cast<int>(lens.surfaces.size());
     if (!(ray.direction.z > T(0))) {
         ray.end(RayStatus::missed, sensor);
@@ -83,11 +87,11 @@ bool reflect_at_sensor(const TraceLens<T>& lens, const StrayMirrors<T>& mirrors,
 /// event of `trace` has it, and whether the ray goes on. A step of `trace`, with the same pieces in the same order, so
 /// that a ray which nothing has reflected yet has the same bits; that loop is by itself, for it is as quick as it is
 /// only with its state in single variables.
-template <Rims rims, class T>
-std::pair<RayStatus, bool> run_to_surface(const TraceLens<T>& lens, int index, bool forward, AtSurface what,
-                                          const StrayMirrors<T>& mirrors, TravellingRay<T>& ray) {
+template <Rims rims, class OfLens, class T>
+constexpr std::pair<RayStatus, bool> run_to_surface(const OfLens& lens, int index, bool forward, AtSurface what,
+                                                    const StrayMirrors<T>& mirrors, TravellingRay<T>& ray) {
     const TraceSurface<T>& surface = lens.surfaces[static_cast<std::size_t>(index)];
-    const SpecialSurface<T>* special =
+    const typename OfLens::Special* special =
         surface.special < 0 ? nullptr : &lens.specials[static_cast<std::size_t>(surface.special)];
     const T heading = forward ? T(1) : T(-1);
     const auto ended = [&](RayStatus why) {
@@ -192,9 +196,10 @@ std::pair<RayStatus, bool> run_to_surface(const TraceLens<T>& lens, int index, b
 ///
 /// `visit(const SurfaceEvent<T>&)` is called at every surface met, in that order; the sensor's number is the number of
 /// surfaces.
-template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T, class Visitor>
-TracedRay<T> trace_ghost(const TraceLens<T>& lens, const GhostPath& path, const Ray<T>& ray,
-                         const StrayMirrors<T>& mirrors, Visitor&& visit) {
+template <Direction direction = Direction::forward, Rims rims = Rims::clip, class OfLens, class Path = GhostPath,
+          class T = decltype(OfLens::image_z), class Visitor>
+constexpr TracedRay<T> trace_ghost(const OfLens& lens, const Path& path, const Ray<T>& ray,
+                                   const StrayMirrors<T>& mirrors, Visitor&& visit) {
     const int count = static_cast<int>(lens.surfaces.size());
     TravellingRay<T> at{.origin = ray.origin, .direction = ray.direction};
     auto next = path.begin();
@@ -223,9 +228,10 @@ TracedRay<T> trace_ghost(const TraceLens<T>& lens, const GhostPath& path, const 
             at.status == RayStatus::ok ? last : at.surface};
 }
 
-template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T>
-TracedRay<T> trace_ghost(const TraceLens<T>& lens, const GhostPath& path, const Ray<T>& ray,
-                         const StrayMirrors<T>& mirrors = {}) {
+template <Direction direction = Direction::forward, Rims rims = Rims::clip, class OfLens, class Path = GhostPath,
+          class T = decltype(OfLens::image_z)>
+constexpr TracedRay<T> trace_ghost(const OfLens& lens, const Path& path, const Ray<T>& ray,
+                                   const StrayMirrors<T>& mirrors = {}) {
     return trace_ghost<direction, rims>(lens, path, ray, mirrors, [](const SurfaceEvent<T>&) {});
 }
 

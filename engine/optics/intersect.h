@@ -35,7 +35,8 @@ struct Intersection {
 /// T: float, double, long double, a multiprecision number, ceres::Jet or a packet. A ray that misses, or only
 /// touches, has `hit` false and meaningless numbers elsewhere.
 template <class T>
-Intersection<T> intersect_from_near(const Vec3<T>& origin, const Vec3<T>& direction, const T& c, const T& heading) {
+constexpr Intersection<T> intersect_from_near(const Vec3<T>& origin, const Vec3<T>& direction, const T& c,
+                                              const T& heading) {
     using std::sqrt;
     const T c_along = c * dot(origin, direction);
     const T b = direction.z - c_along;
@@ -65,14 +66,14 @@ Intersection<T> intersect_from_near(const Vec3<T>& origin, const Vec3<T>& direct
 
 /// Along the ray to its closest approach to the vertex (0, 0, 0), mm.
 template <class T>
-T distance_to_vertex(const Vec3<T>& origin, const Vec3<T>& direction) {
+constexpr T distance_to_vertex(const Vec3<T>& origin, const Vec3<T>& direction) {
     return -dot(origin, direction);
 }
 
 /// The same from any origin o, from the ray's closest approach to the vertex, p = o − (o·d) d: far-away origins do
 /// not matter. p·d would be zero but for rounding: from an object at 1e12 mm it is 1e-4 mm, and b carries it.
 template <class T>
-Intersection<T> intersect(const Vec3<T>& origin, const Vec3<T>& direction, const T& c, const T& heading) {
+constexpr Intersection<T> intersect(const Vec3<T>& origin, const Vec3<T>& direction, const T& c, const T& heading) {
     const T to_vertex = distance_to_vertex(origin, direction);
     Intersection<T> meeting = intersect_from_near(origin + to_vertex * direction, direction, c, heading);
     meeting.distance = to_vertex + meeting.distance;
@@ -80,7 +81,7 @@ Intersection<T> intersect(const Vec3<T>& origin, const Vec3<T>& direction, const
 }
 
 template <class T>
-Intersection<T> intersect(const Ray<T>& ray, const T& c, const T& heading) {
+constexpr Intersection<T> intersect(const Ray<T>& ray, const T& c, const T& heading) {
     return intersect(ray.origin, ray.direction, c, heading);
 }
 

@@ -6,7 +6,7 @@ namespace lensproof::optics {
 
 /// The direction after a mirror whose unit normal is turned along the ray: d − 2 cos i n.
 template <class T>
-Vec3<T> reflect(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence) {
+constexpr Vec3<T> reflect(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence) {
     return direction - (T(2) * cos_incidence) * normal;
 }
 
@@ -14,7 +14,8 @@ Vec3<T> reflect(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_in
 /// §1.5.2, eqs. 21a, 21b). By itself and not as 1 − T, so that a cemented surface's keeps its digits; between equal
 /// indices it is exactly 0.
 template <class T>
-T fresnel_reflectance(const T& index_before, const T& index_after, const T& cos_incidence, const T& cos_refraction) {
+constexpr T fresnel_reflectance(const T& index_before, const T& index_after, const T& cos_incidence,
+                                const T& cos_refraction) {
     const auto amplitude = [](const T& a, const T& b) { return (a - b) / (a + b); };
     const T s = amplitude(index_before * cos_incidence, index_after * cos_refraction);
     const T p = amplitude(index_after * cos_incidence, index_before * cos_refraction);
@@ -23,9 +24,9 @@ T fresnel_reflectance(const T& index_before, const T& index_after, const T& cos_
 
 /// What a surface reflects of unpolarised light that runs forward through the lens or back; `special` is null where it
 /// has nothing beyond its sphere. Beyond the critical angle a bare surface reflects all.
-template <class T>
-T surface_reflectance(const TraceSurface<T>& surface, const SpecialSurface<T>* special, bool forward,
-                      const T& cos_incidence, const Refraction<T>& bent) {
+template <class T, class Special>
+constexpr T surface_reflectance(const TraceSurface<T>& surface, const Special* special, bool forward,
+                                const T& cos_incidence, const Refraction<T>& bent) {
     if (special != nullptr && !special->coating.is_bare()) {
         return coating_reflectance(special->coating, surface.index_before, surface.index_after, cos_incidence, forward);
     }

@@ -24,7 +24,7 @@ struct CosRefraction {
 };
 
 template <class T>
-CosRefraction<T> cos_refraction(const T& cos_incidence, const T& sin2_incidence, const T& index_ratio) {
+constexpr CosRefraction<T> cos_refraction(const T& cos_incidence, const T& sin2_incidence, const T& index_ratio) {
     using std::sqrt;
     const T squared = cos_incidence * cos_incidence + (T(1) - index_ratio) * (T(1) + index_ratio) * sin2_incidence;
     const auto transmitted = squared > T(0);
@@ -37,8 +37,8 @@ CosRefraction<T> cos_refraction(const T& cos_incidence, const T& sin2_incidence,
 ///
 /// cos² i' = 1 − μ² sin² i is formed as cos² i + (1 − μ²) sin² i, which is exact for μ = 1.
 template <class T>
-Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence, const T& sin2_incidence,
-                      const T& index_ratio) {
+constexpr Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence,
+                                const T& sin2_incidence, const T& index_ratio) {
     const auto [cosine, transmitted] = cos_refraction(cos_incidence, sin2_incidence, index_ratio);
     return {.direction = index_ratio * direction + (cosine - index_ratio * cos_incidence) * normal,
             .cos_refraction = cosine,
@@ -47,15 +47,15 @@ Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& 
 
 /// The normal at a point of the sphere of `intersect`.
 template <class T>
-Vec3<T> normal_of_sphere(const Vec3<T>& point, const T& c, const T& heading) {
+constexpr Vec3<T> normal_of_sphere(const Vec3<T>& point, const T& c, const T& heading) {
     return heading * Vec3<T>{-c * point.x, -c * point.y, T(1) - c * point.z};
 }
 
 /// The same at a point of that sphere, whose normal is heading · (−c x, −c y, 1 − c z): in fewer steps, for the inner
 /// loop.
 template <class T>
-Refraction<T> refract_at_sphere(const Vec3<T>& direction, const Vec3<T>& point, const T& c, const T& heading,
-                                const T& cos_incidence, const T& sin2_incidence, const T& index_ratio) {
+constexpr Refraction<T> refract_at_sphere(const Vec3<T>& direction, const Vec3<T>& point, const T& c, const T& heading,
+                                          const T& cos_incidence, const T& sin2_incidence, const T& index_ratio) {
     const auto [cosine, transmitted] = cos_refraction(cos_incidence, sin2_incidence, index_ratio);
     const T along_z = heading * (cosine - index_ratio * cos_incidence);
     const T towards_centre = -c * along_z;
@@ -68,7 +68,8 @@ Refraction<T> refract_at_sphere(const Vec3<T>& direction, const Vec3<T>& point, 
 
 /// The same where sin² i is not known: the square of d − cos i n, which keeps the digits of small angles.
 template <class T>
-Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence, const T& index_ratio) {
+constexpr Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence,
+                                const T& index_ratio) {
     const Vec3<T> across = direction - cos_incidence * normal;
     return refract(direction, normal, cos_incidence, dot(across, across), index_ratio);
 }
@@ -80,7 +81,8 @@ Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& 
 /// cosine (p). Formed as 4 r (1 − r), r the lesser one's part of the sum: near grazing, where little passes, it keeps
 /// the digits that 1 − R loses, and two tiny cosines make no 0 / 0. Between equal indices it is exactly 1.
 template <class T>
-T fresnel_transmittance(const T& index_before, const T& index_after, const T& cos_incidence, const T& cos_refraction) {
+constexpr T fresnel_transmittance(const T& index_before, const T& index_after, const T& cos_incidence,
+                                  const T& cos_refraction) {
     const auto passing = [](const T& a, const T& b) {
         const T r = select(a < b, a, b) / (a + b);
         return r * (T(1) - r);

@@ -1,6 +1,7 @@
 // engine/optics/stop_mask.h — what a stop that is no full circle lets through.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,19 +10,69 @@
 
 namespace lensproof::optics {
 
+/// What a StopMask says, as plain arrays of someone else's: what every tracer asks, on a GPU too. In units of the
+/// semi-diameter.
+struct StopOpening {
+    /// An edge of the polygon: the disc (curved blade) or half plane (straight) that it bounds.
+    struct Edge {
+        double x = 0.0;  // towards the middle of the edge, a unit vector
+        double y = 0.0;
+        double centre = 0.0;          // along it, of the disc
+        double radius_squared = 0.0;  // of the disc; 0: the half plane up to `centre`
+
+        [[nodiscard]] constexpr double margin(double at_x, double at_y) const {  // ≤ 0 inside
+            const double along = x * at_x + y * at_y - centre;
+            const double across = x * at_y - y * at_x;
+            return radius_squared > 0.0 ? along * along + across * across - radius_squared : along;
+        }
+        [[nodiscard]] double radius() const;  // infinite where it is straight
+    };
+
+    std::span<const Edge> edges;
+    std::span<const float> texture;  // row by row from the top; empty: none
+    int texture_columns = 0;
+    int texture_rows = 0;
+
+    [[nodiscard]] constexpr bool is_full_circle() const { return edges.empty() && texture.empty(); }
+
+    /// The transmittance, 0 to 1, at a point inside the unit circle.
+    [[nodiscard]] constexpr double transmittance(double x, double y) const {
+        for (const Edge& edge : edges) {
+            if (!(edge.margin(x, y) <= 0.0)) {
+                return 0.0;
+            }
+        }
+        if (texture.empty()) {
+            return 1.0;
+        }
+        const auto cell = [](double position, int size) {
+            const int at = static_cast<int>(0.5 * (position + 1.0) * size);
+            return at < 0 ? 0 : (at < size ? at : size - 1);
+        };
+        const auto row = static_cast<std::size_t>(cell(-y, texture_rows));
+        return texture[row * static_cast<std::size_t>(texture_columns) +
+                       static_cast<std::size_t>(cell(x, texture_columns))];
+    }
+};
+
 /// The part of a stop's circle that is open, at a given semi-diameter.
 class StopMask {
   public:
+    using Edge = StopOpening::Edge;
+
     /// The full circle.
     StopMask() = default;
 
     /// Throws InputError naming a texture's picture that was not read.
     explicit StopMask(const StopShape& shape);
 
-    [[nodiscard]] bool is_full_circle() const { return arcs_.empty() && !texture_; }
+    [[nodiscard]] bool is_full_circle() const { return edges_.empty() && !texture_; }
+
+    /// The same as plain arrays, which are this mask's.
+    [[nodiscard]] StopOpening opening() const;
 
     /// The transmittance, 0 to 1, at a point of the stop's plane in units of its semi-diameter, inside the unit circle.
-    [[nodiscard]] double transmittance(double x, double y) const;
+    [[nodiscard]] double transmittance(double x, double y) const { return opening().transmittance(x, y); }
 
     /// How far a point stands inside (≤ 0) or outside (> 0) the blade's edge that is nearest to being crossed, and
     /// which that is, from 0: smooth along each edge. A texture has no edges but where it is dark: an infinite margin
@@ -67,20 +118,9 @@ class StopMask {
     void append_to(std::string& bytes) const;
 
   private:
-    /// An edge of the polygon: the disc (curved blade) or half plane (straight) that it bounds.
-    struct Arc {
-        double x = 0.0;  // towards the middle of the edge, a unit vector
-        double y = 0.0;
-        double centre = 0.0;          // along it, of the disc
-        double radius_squared = 0.0;  // of the disc; 0: the half plane up to `centre`
-
-        [[nodiscard]] double margin(double at_x, double at_y) const;  // ≤ 0 inside
-        [[nodiscard]] double radius() const;                          // infinite where it is straight
-    };
-
     [[nodiscard]] double half_chord() const;  // of each edge
 
-    std::vector<Arc> arcs_;
+    std::vector<Edge> edges_;
     std::shared_ptr<const StopTexture> texture_;
 };
 

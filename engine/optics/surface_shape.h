@@ -32,7 +32,7 @@ struct SurfaceShape {
     T curvature_x = T(0);  // of a toroid
 
     /// Whether a quadratic gives the intersection.
-    [[nodiscard]] bool is_conic() const { return terms == 0 && odd_terms == 0 && !is_toroid; }
+    [[nodiscard]] constexpr bool is_conic() const { return terms == 0 && odd_terms == 0 && !is_toroid; }
 };
 
 /// The profile at r² and its derivative dg/d(r²). Beyond the equator of an ellipsoid, where there is no sag, `defined`
@@ -50,7 +50,7 @@ struct SagProfile {
 
 /// Adds Σ A_j r^j of the odd j to a profile.
 template <class Scalar, class T>
-void add_odd_terms(const SurfaceShape<Scalar>& shape, const T& r2, SagProfile<T>& profile) {
+constexpr void add_odd_terms(const SurfaceShape<Scalar>& shape, const T& r2, SagProfile<T>& profile) {
     using std::abs;
     using std::sqrt;
     const auto off_axis = r2 > T(0);
@@ -67,7 +67,7 @@ void add_odd_terms(const SurfaceShape<Scalar>& shape, const T& r2, SagProfile<T>
 
 /// The profile with its terms along the axis.
 template <class Scalar, class T>
-inline SagProfile<T> axial_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
+constexpr SagProfile<T> axial_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
     using std::abs;
     using std::sqrt;
     const Scalar& c = shape.curvature;
@@ -94,7 +94,7 @@ inline SagProfile<T> axial_profile(const SurfaceShape<Scalar>& shape, const T& r
 
 /// The terms alone, on a plane, along the axis.
 template <class Scalar, class T>
-SagProfile<T> terms_profile(SurfaceShape<Scalar> shape, const T& r2) {
+constexpr SagProfile<T> terms_profile(SurfaceShape<Scalar> shape, const T& r2) {
     shape.curvature = Scalar(0);
     return axial_profile(shape, r2);
 }
@@ -102,7 +102,7 @@ SagProfile<T> terms_profile(SurfaceShape<Scalar> shape, const T& r2) {
 /// 1 / cos of the angle of a conic's normal with the axis, φ, and its logarithm's derivative dlnφ / d(r²). 1 and 0
 /// outside `defined`, where there is no conic.
 template <class Scalar, class T>
-std::pair<T, T> normal_secant(const SurfaceShape<Scalar>& shape, const T& r2, const MaskOf<T>& defined) {
+constexpr std::pair<T, T> normal_secant(const SurfaceShape<Scalar>& shape, const T& r2, const MaskOf<T>& defined) {
     using std::sqrt;
     const Scalar c2 = shape.curvature * shape.curvature;
     const T above = select(defined, T(1) - T(shape.conic * c2) * r2, T(1));
@@ -113,7 +113,7 @@ std::pair<T, T> normal_secant(const SurfaceShape<Scalar>& shape, const T& r2, co
 /// The profile with its terms along the conic's normal. By itself, and called with a value, since what is put into the
 /// other's inner loop, or only takes addresses there, costs every asphere a tenth.
 template <class Scalar, class T>
-[[gnu::noinline]] SagProfile<T> profile_along_normal(const SurfaceShape<Scalar>& shape, T r2) {
+[[gnu::noinline]] constexpr SagProfile<T> profile_along_normal(const SurfaceShape<Scalar>& shape, T r2) {
     const SurfaceShape<Scalar> bare{.curvature = shape.curvature, .conic = shape.conic};
     const SagProfile<T> conic = axial_profile(bare, r2);
     const SagProfile<T> terms = terms_profile(shape, r2);
@@ -123,7 +123,7 @@ template <class Scalar, class T>
 }
 
 template <class Scalar, class T>
-inline SagProfile<T> sag_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
+constexpr SagProfile<T> sag_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
     return shape.along_normal ? profile_along_normal(shape, r2) : axial_profile(shape, r2);
 }
 
@@ -138,7 +138,7 @@ struct Implicit {
 
 /// F = z − g(r²), or for a toroid F = z − g − c_x (x² + z² − g²) / 2, the curvature form of x² + (z − R)² = (R − g)².
 template <class Scalar, class T>
-Implicit<T> implicit_surface(const SurfaceShape<Scalar>& shape, const Vec3<T>& p) {
+constexpr Implicit<T> implicit_surface(const SurfaceShape<Scalar>& shape, const Vec3<T>& p) {
     if (!shape.is_toroid) {
         const SagProfile<T> g = sag_profile(shape, p.x * p.x + p.y * p.y);
         return {p.z - g.sag, {T(-2) * p.x * g.slope, T(-2) * p.y * g.slope, T(1)}, g.largest_term, g.defined};
@@ -153,7 +153,7 @@ Implicit<T> implicit_surface(const SurfaceShape<Scalar>& shape, const Vec3<T>& p
 
 /// Where the surface is at (x, y): z above the vertex's plane. Not a number where there is no surface.
 template <class Scalar, class T>
-T sag(const SurfaceShape<Scalar>& shape, const T& x, const T& y) {
+constexpr T sag(const SurfaceShape<Scalar>& shape, const T& x, const T& y) {
     using std::sqrt;
     const SagProfile<T> g = sag_profile(shape, shape.is_toroid ? y * y : x * x + y * y);
     const T nowhere(std::numeric_limits<Scalar>::quiet_NaN());
@@ -187,7 +187,7 @@ struct ConicRoot {
 ///
 /// Here and in `axial_profile` the word `inline` is worth a tenth of an asphere's time: g++ 12 weighs it.
 template <class T>
-inline ConicRoot<T> conic_root(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k, const T& heading) {
+constexpr ConicRoot<T> conic_root(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k, const T& heading) {
     using std::sqrt;
     const T first = -dot(origin, d);
     const Vec3<T> near_vertex = origin + first * d;
@@ -214,8 +214,8 @@ inline ConicRoot<T> conic_root(const Vec3<T>& origin, const Vec3<T>& d, const T&
 /// `intersect` adds. ∇F's z is √(1 − (1 + k) c² r²) as well, which does not amplify the error of z by k; it stands
 /// where the root is no small difference, the other form near an ellipsoid's equator.
 template <class T>
-std::pair<Intersection<T>, Vec3<T>> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k,
-                                                    const T& heading) {
+constexpr std::pair<Intersection<T>, Vec3<T>> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c,
+                                                              const T& k, const T& heading) {
     using std::sqrt;
     const ConicRoot<T> met = conic_root(origin, d, c, k, heading);
     const Vec3<T>& point = met.point;
@@ -242,7 +242,7 @@ struct ShapeCrossing {
 
 using lensproof::assign_where;
 template <Packet T>
-void assign_where(const MaskOf<T>& mask, ShapeCrossing<T>& to, const ShapeCrossing<T>& value) {
+constexpr void assign_where(const MaskOf<T>& mask, ShapeCrossing<T>& to, const ShapeCrossing<T>& value) {
     to = {select(mask, value.point, to.point), select(mask, value.distance, to.distance),
           select(mask, value.gradient, to.gradient), (mask && value.found) || (!mask && to.found)};
 }
@@ -252,8 +252,8 @@ void assign_where(const MaskOf<T>& mask, ShapeCrossing<T>& to, const ShapeCrossi
 /// the other sense, is halved. `found` is false where that leads nowhere. Lanes outside `wanted` are not waited for,
 /// and are not found; a lane that has arrived stays while others go on.
 template <class Scalar, class T>
-ShapeCrossing<T> newton_intersect(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin, const Vec3<T>& d,
-                                  const T& heading, const T& start, const MaskOf<T>& wanted) {
+constexpr ShapeCrossing<T> newton_intersect(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin, const Vec3<T>& d,
+                                            const T& heading, const T& start, const MaskOf<T>& wanted) {
     using std::abs;
     using std::sqrt;
     constexpr int kMostSteps = 60;
@@ -292,8 +292,8 @@ ShapeCrossing<T> newton_intersect(const SurfaceShape<Scalar>& shape, const Vec3<
 /// Where a ray crosses a shape that is no conic, by Newton's method: from the conic's intersection (not a toroid's),
 /// else from the vertex's plane, else from seven points of the ray around that nearest to the vertex.
 template <class Scalar, class T>
-ShapeCrossing<T> find_crossing(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin, const Vec3<T>& d,
-                               const T& heading) {
+constexpr ShapeCrossing<T> find_crossing(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin, const Vec3<T>& d,
+                                         const T& heading) {
     ShapeCrossing<T> crossing{};
     MaskOf<T> sought(true);
     const auto try_from = [&](const T& start, const MaskOf<T>& where) {
@@ -325,8 +325,8 @@ ShapeCrossing<T> find_crossing(const SurfaceShape<Scalar>& shape, const Vec3<T>&
 /// `intersect` for any shape. A surface that turns over may be met more than once; the root found is then the one next
 /// to the start (`find_crossing`). Returned with the unit normal there, turned along the ray.
 template <class Scalar, class T>
-std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin,
-                                              const Vec3<T>& d, const T& heading) {
+constexpr std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin,
+                                                        const Vec3<T>& d, const T& heading) {
     using std::sqrt;
     const auto meeting = [&](const Vec3<T>& point, const T& distance, const T& cos_incidence, const Vec3<T>& gradient,
                              const MaskOf<T>& hit) {

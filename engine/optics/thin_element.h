@@ -37,7 +37,7 @@ struct ThinElement {
     std::array<T, kPhaseTerms> radial{};  // a_1, …, mm^(1−2i)
 
     /// φ of n' u' = n u − φ y near the axis, 1/mm. What a grating turns the axis by is left out.
-    [[nodiscard]] T first_order_power() const { return power - T(2) * radial[0]; }
+    [[nodiscard]] constexpr T first_order_power() const { return power - T(2) * radial[0]; }
 };
 
 /// A ray at the surface, in its own axes: the media are those in front of and behind the ray, whichever way it runs.
@@ -64,7 +64,7 @@ namespace thin_detail {
 
 /// |(q, 1)|.
 template <class T>
-T length_beside(const Vec2<T>& q) {
+constexpr T length_beside(const Vec2<T>& q) {
     using std::sqrt;
     return sqrt(q.x * q.x + q.y * q.y + T(1));
 }
@@ -72,7 +72,7 @@ T length_beside(const Vec2<T>& q) {
 /// n |P| − n |P − p| of the point P on a ray through p whose z is 1/v, P − p being (m, 1) / v: of one formula with v =
 /// 0, where P is far off and this is how much earlier its wave is at p.
 template <class T>
-T ahead_of_vertex(const T& index, const T& v, const Vec2<T>& p, const Vec2<T>& m) {
+constexpr T ahead_of_vertex(const T& index, const T& v, const Vec2<T>& p, const Vec2<T>& m) {
     const Vec2<T> from_vertex{m.x + v * p.x, m.y + v * p.y};
     return -index * (T(2) * (p.x * m.x + p.y * m.y) + v * (p.x * p.x + p.y * p.y)) /
            (length_beside(from_vertex) + length_beside(m));
@@ -81,7 +81,7 @@ T ahead_of_vertex(const T& index, const T& v, const Vec2<T>& p, const Vec2<T>& m
 }  // namespace thin_detail
 
 template <class Scalar, class T>
-ThinBending<T> bend_at_ideal_lens(const ThinElement<Scalar>& lens, const ThinMeeting<T>& at) {
+constexpr ThinBending<T> bend_at_ideal_lens(const ThinElement<Scalar>& lens, const ThinMeeting<T>& at) {
     using thin_detail::ahead_of_vertex;
     const T power(lens.power);
     const Vec2<T> p{at.point.x, at.point.y};
@@ -111,7 +111,7 @@ struct RadialPhase {
 };
 
 template <class T>
-RadialPhase<T> radial_phase(const std::array<T, kPhaseTerms>& radial, const T& r2) {
+constexpr RadialPhase<T> radial_phase(const std::array<T, kPhaseTerms>& radial, const T& r2) {
     RadialPhase<T> phase;
     for (int i = kPhaseTerms - 1; i >= 0; --i) {
         const T& a = radial[static_cast<std::size_t>(i)];
@@ -126,12 +126,12 @@ RadialPhase<T> radial_phase(const std::array<T, kPhaseTerms>& radial, const T& r
 
 /// (∂W/∂x, ∂W/∂y, 0) at a point, and how it changes over a shift from there; in the surface's own axes.
 template <class T>
-Vec3<T> phase_gradient(const ThinElement<T>& element, const Vec3<T>& p) {
+constexpr Vec3<T> phase_gradient(const ThinElement<T>& element, const Vec3<T>& p) {
     const T twice_slope = T(2) * radial_phase(element.radial, T(p.x * p.x + p.y * p.y)).slope;
     return {twice_slope * p.x, twice_slope * p.y + element.linear, T(0)};
 }
 template <class T>
-Vec3<T> phase_gradient_turn(const ThinElement<T>& element, const Vec3<T>& p, const Vec3<T>& shift) {
+constexpr Vec3<T> phase_gradient_turn(const ThinElement<T>& element, const Vec3<T>& p, const Vec3<T>& shift) {
     const RadialPhase<T> phase = radial_phase(element.radial, T(p.x * p.x + p.y * p.y));
     const T along = T(4) * phase.bend * (p.x * shift.x + p.y * shift.y);
     return {T(2) * phase.slope * shift.x + along * p.x, T(2) * phase.slope * shift.y + along * p.y, T(0)};
@@ -139,7 +139,8 @@ Vec3<T> phase_gradient_turn(const ThinElement<T>& element, const Vec3<T>& p, con
 
 /// `linear` and `radial` may differ from ray to ray, as their wavelengths do.
 template <class T>
-ThinBending<T> bend_at_phase(const T& linear, const std::array<T, kPhaseTerms>& radial, const ThinMeeting<T>& at) {
+constexpr ThinBending<T> bend_at_phase(const T& linear, const std::array<T, kPhaseTerms>& radial,
+                                       const ThinMeeting<T>& at) {
     using std::sqrt;
     const T r2 = at.point.x * at.point.x + at.point.y * at.point.y;
     const RadialPhase<T> phase = radial_phase(radial, r2);
@@ -155,7 +156,7 @@ ThinBending<T> bend_at_phase(const T& linear, const std::array<T, kPhaseTerms>& 
 
 /// For rays of one wavelength.
 template <class Scalar, class T>
-ThinBending<T> bend_at(const ThinElement<Scalar>& element, const ThinMeeting<T>& at) {
+constexpr ThinBending<T> bend_at(const ThinElement<Scalar>& element, const ThinMeeting<T>& at) {
     if (element.kind == ThinKind::ideal_lens) {
         return bend_at_ideal_lens(element, at);
     }

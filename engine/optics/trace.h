@@ -9,8 +9,10 @@
 // light travels against them, and t < 0, so that n t is positive.
 #pragma once
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
+#include "engine/base/elementary.h"
 #include "engine/base/ray.h"
 #include "engine/optics/coating.h"
 #include "engine/optics/intersect.h"
@@ -40,37 +42,37 @@ struct TraceSurface {
 };
 
 /// What a surface has beyond a centred sphere's curvature and rim. Kept apart, so that a lens of spheres walks a short
-/// array.
-template <class T>
+/// array. Layers and mask own what they say, or look at it (`StopOpening`).
+template <class T, class Layers = TraceLayers<T>, class Mask = StopMask>
 struct SpecialSurface {
     bool has_shape = false;
     SurfaceShape<T> shape{};
     Vec2<T> vertex{};  // x, y of the displaced vertex
     std::array<Vec3<T>, 3> axes{{{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}}};  // its frame's x, y, z
-    TraceCoating<T> coating{};
-    StopMask mask{};
+    TraceCoating<T, Layers> coating{};
+    Mask mask{};
     ThinElement<T> thin{};
 
     /// From lens space to the surface's own axes, and back; of packets too.
     template <class V = T>
-    [[nodiscard]] Vec3<V> to_own(const Vec3<V>& v) const {
+    [[nodiscard]] constexpr Vec3<V> to_own(const Vec3<V>& v) const {
         return {dot(axis<V>(0), v), dot(axis<V>(1), v), dot(axis<V>(2), v)};
     }
     template <class V = T>
-    [[nodiscard]] Vec3<V> from_own(const Vec3<V>& v) const {
+    [[nodiscard]] constexpr Vec3<V> from_own(const Vec3<V>& v) const {
         return v.x * axis<V>(0) + (v.y * axis<V>(1) + v.z * axis<V>(2));
     }
 
   private:
     template <class V>
-    [[nodiscard]] Vec3<V> axis(std::size_t i) const {
+    [[nodiscard]] constexpr Vec3<V> axis(std::size_t i) const {
         return {V(axes[i].x), V(axes[i].y), V(axes[i].z)};
     }
 };
 
 /// The transmittance of a stop's texture or blades at a point inside its circle; 1 where it has neither.
-template <class T>
-T mask_transmittance(const TraceSurface<T>& surface, const SpecialSurface<T>& special, const T& x, const T& y) {
+template <class T, class Special>
+constexpr T mask_transmittance(const TraceSurface<T>& surface, const Special& special, const T& x, const T& y) {
     if (special.mask.is_full_circle()) {
         return T(1);
     }
@@ -80,15 +82,15 @@ T mask_transmittance(const TraceSurface<T>& surface, const SpecialSurface<T>& sp
 }
 
 /// The transmittance of a coated surface for unpolarised light, from either side.
-template <class T>
-T coated_transmittance(const TraceSurface<T>& surface, const SpecialSurface<T>& special, bool forward,
-                       const T& cos_incidence) {
+template <class T, class Special>
+constexpr T coated_transmittance(const TraceSurface<T>& surface, const Special& special, bool forward,
+                                 const T& cos_incidence) {
     return coating_transmittance(special.coating, surface.index_before, surface.index_after, cos_incidence, forward);
 }
 
 template <class T>
-TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_diameter, T index_before, T index_after,
-                                   bool is_stop) {
+constexpr TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_diameter, T index_before, T index_after,
+                                             bool is_stop) {
     return {.curvature = curvature,
             .vertex_z = vertex_z,
             .semi_diameter_squared = semi_diameter * semi_diameter,
@@ -125,6 +127,8 @@ void note_near_gaps(std::vector<TraceSurface<T>>& surfaces) {
 /// A lens at one wavelength and in one precision: its surfaces from the scene to the sensor.
 template <class T>
 struct TraceLens {
+    using Special = SpecialSurface<T>;
+
     std::vector<TraceSurface<T>> surfaces;
     T image_z;  // the sensor's plane, mm
     std::vector<SpecialSurface<T>> specials{};
@@ -133,7 +137,7 @@ struct TraceLens {
     std::vector<T> attenuation{};
 
     /// Of the medium that a ray crosses on its way to a surface.
-    [[nodiscard]] const T& attenuation_towards(int surface, bool forward) const {
+    [[nodiscard]] constexpr const T& attenuation_towards(int surface, bool forward) const {
         return attenuation[static_cast<std::size_t>(forward ? surface : surface + 1)];
     }
 };
@@ -167,15 +171,19 @@ struct SurfaceEvent {
 
 /// What is left of light over an optical depth, Σ attenuation · distance.
 template <class T>
-T fading(const T& optical_depth) {
-    using std::exp;
-    return exp(-optical_depth);
+constexpr T fading(const T& optical_depth) {
+    if constexpr (std::is_same_v<T, float> || std::is_same_v<T, double>) {
+        return exponential_of_negative(T(-optical_depth));
+    } else {
+        using std::exp;
+        return exp(-optical_depth);
+    }
 }
 
 /// `trace`, compiled once for lenses of centred, bare spheres of clear glass alone and once for all others, so that the
-/// former pay for nothing.
-template <Direction direction, Rims rims, bool has_specials, class T, class Visitor>
-TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
+/// former pay for nothing. `OfLens`: a TraceLens<T>, or one wavelength of a LensView<T>.
+template <Direction direction, Rims rims, bool has_specials, class OfLens, class T, class Visitor>
+constexpr TracedRay<T> trace_through(const OfLens& lens, const Ray<T>& ray, Visitor&& visit) {
     // The state in single variables, made a TracedRay only at the end, and two vectors for `intersect` rather than a
     // Ray: g++ 12 keeps the aggregates in memory, written 8 bytes at a time and copied 16 at a time, which processors
     // do not forward from store to load. That doubled the time of a surface (lensproof_benchmark, trace/tessar).
@@ -208,7 +216,7 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         // In the surface's own frame, until the ray leaves it.
         Vec3<T> from_vertex{origin.x, origin.y, origin.z - (surface.vertex_z - last_vertex_z)};
         Vec3<T> own_direction = ray_direction;
-        const SpecialSurface<T>* special = nullptr;
+        const typename OfLens::Special* special = nullptr;
         if constexpr (has_specials) {
             if (surface.special >= 0) {
                 special = &lens.specials[surface.special];
@@ -323,7 +331,7 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
 /// `trace_through` of lenses that have more than spheres, kept apart: inlined beside the other it takes up to a twelfth
 /// of that one's speed.
 template <Direction direction, Rims rims, class T, class Visitor>
-[[gnu::noinline]] TracedRay<T> trace_specials(const TraceLens<T>& lens, const Ray<T>& ray, Visitor& visit) {
+[[gnu::noinline]] constexpr TracedRay<T> trace_specials(const TraceLens<T>& lens, const Ray<T>& ray, Visitor& visit) {
     return trace_through<direction, rims, true>(lens, ray, visit);
 }
 
@@ -332,26 +340,26 @@ template <Direction direction, Rims rims, class T, class Visitor>
 /// `visit(const SurfaceEvent<T>&)` is called at every surface reached, the one where the ray ends included.
 /// A missed surface has no point: its event repeats the ray as it was.
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T, class Visitor>
-TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
+constexpr TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
     return lens.specials.empty() && lens.attenuation.empty() ? trace_through<direction, rims, false>(lens, ray, visit)
                                                              : trace_specials<direction, rims>(lens, ray, visit);
 }
 
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T>
-TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray) {
+constexpr TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray) {
     return trace<direction, rims>(lens, ray, [](const SurfaceEvent<T>&) {});
 }
 
 /// Forward, whatever the rims would cut.
 template <class T>
-TracedRay<T> trace_past_rims(const TraceLens<T>& lens, const Ray<T>& ray) {
+constexpr TracedRay<T> trace_past_rims(const TraceLens<T>& lens, const Ray<T>& ray) {
     return trace<Direction::forward, Rims::follow>(lens, ray);
 }
 
 /// From the sensor's side `from` through `to`, in reverse: z < 0, also behind an odd number of mirrors, where the
 /// sensor stands at the smaller z.
 template <class T>
-Ray<T> reverse_ray(const Vec3<T>& from, const Vec3<T>& to) {
+constexpr Ray<T> reverse_ray(const Vec3<T>& from, const Vec3<T>& to) {
     const Vec3<T> direction = normalized(to - from);
     return {from, direction.z > T(0) ? T(-1) * direction : direction};
 }
@@ -365,7 +373,7 @@ struct PlanePoint {
 };
 
 template <class T>
-PlanePoint<T> meet_plane(const Ray<T>& ray, const T& z) {
+constexpr PlanePoint<T> meet_plane(const Ray<T>& ray, const T& z) {
     const T distance = (z - ray.origin.z) / ray.direction.z;
     Vec3<T> point = ray.origin + distance * ray.direction;
     point.z = z;

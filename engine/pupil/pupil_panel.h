@@ -18,11 +18,11 @@ struct PupilPanel {
     T next_lower;
     T next_upper;
 
-    [[nodiscard]] T lower_at(const T& t) const { return lower + t * (next_lower - lower); }
-    [[nodiscard]] T upper_at(const T& t) const { return upper + t * (next_upper - upper); }
+    [[nodiscard]] constexpr T lower_at(const T& t) const { return lower + t * (next_lower - lower); }
+    [[nodiscard]] constexpr T upper_at(const T& t) const { return upper + t * (next_upper - upper); }
 
     /// Where it is cut so that `area` (over the region's width, mm) lies before the cut: as a fraction of the panel.
-    [[nodiscard]] T cut(const T& area) const {
+    [[nodiscard]] constexpr T cut(const T& area) const {
         using std::sqrt;
         const T height = upper - lower;
         const T next_height = next_upper - next_lower;
@@ -34,7 +34,7 @@ struct PupilPanel {
     }
 
     /// The point at fraction t of the panel and v of the height there: x as a fraction of the region's width, y in mm.
-    [[nodiscard]] Vec2<T> point(const T& t, const T& v) const {
+    [[nodiscard]] constexpr Vec2<T> point(const T& t, const T& v) const {
         return {fraction + t * (next_fraction - fraction), (T(1) - v) * lower_at(t) + v * upper_at(t)};
     }
 };

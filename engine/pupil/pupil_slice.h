@@ -7,6 +7,7 @@
 
 #include "engine/base/look_up.h"
 #include "engine/base/select.h"
+#include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_panel.h"
 
 namespace lensproof::pupil {
@@ -31,7 +32,8 @@ struct PupilSliceTables {
                                                 // the area begins in, between this node and the next
     const double* panel_fractions = nullptr;    // where the columns stand in a region's width
     const double* per_panel = nullptr;          // 1 / the fraction that each panel has of the width
-    double disc_radius2 = 0.0;                  // of the disc that the defensive fraction is drawn from, mm²
+    Disc disc;                                  // that the defensive fraction is drawn from
+    double disc_radius2 = 0.0;                  // of it, mm²
     double disc_pdf = 0.0;                      // what it adds to the pdf there, 1/mm²
     double defensive_fraction = 0.0;
     double per_other_fraction = 1.0;  // 1 / (1 − the defensive fraction)
@@ -51,7 +53,8 @@ class PupilSlice {
     using Mask = MaskOf<T>;
 
   public:
-    PupilSlice(const PupilSliceTables& tables, const T& slice, const Vec2<T>& sensor_point) : tables_(tables) {
+    constexpr PupilSlice(const PupilSliceTables& tables, const T& slice, const Vec2<T>& sensor_point)
+        : tables_(tables) {
         using std::sqrt;
         const T radius = sqrt(sensor_point.x * sensor_point.x + sensor_point.y * sensor_point.y);
         const T fraction_or_none = radius * look_up(tables.per_end, slice);
@@ -80,7 +83,7 @@ class PupilSlice {
     }
 
     /// The point that (u, v) in the unit square maps to, u being at least the defensive fraction.
-    [[nodiscard]] PupilDraw<T> sample(const T& u, const T& v) const {
+    [[nodiscard]] constexpr PupilDraw<T> sample(const T& u, const T& v) const {
         constexpr double kBelowOne = 1.0 - 0x1p-53;
         const T rest = (u - T(tables_.defensive_fraction)) * T(tables_.per_other_fraction);
         const T towards_right = T(2) * rest - T(1);
@@ -109,9 +112,9 @@ class PupilSlice {
     }
 
     /// Of the region, mm²; 0 where no light was found.
-    [[nodiscard]] T area() const { return select(is_lit_, T(2) * (width_ * whole_area_), T(0)); }
+    [[nodiscard]] constexpr T area() const { return select(is_lit_, T(2) * (width_ * whole_area_), T(0)); }
 
-    [[nodiscard]] Mask contains(const Vec2<T>& point) const {
+    [[nodiscard]] constexpr Mask contains(const Vec2<T>& point) const {
         const T x = cosine_ * point.x - sine_ * point.y;
         const T y = sine_ * point.x + cosine_ * point.y;
         const T fraction = select(x < T(0), -x, x) / select(is_lit_, width_, T(1));
@@ -133,22 +136,22 @@ class PupilSlice {
     static constexpr int kPerColumn = PupilSliceTables::kPerColumn;
 
     /// A number of a column of the mean; of column 0, number 0, the width.
-    [[nodiscard]] T mean(const Index<T>& column, int number) const {
+    [[nodiscard]] constexpr T mean(const Index<T>& column, int number) const {
         const T inner = column.look_up(tables_.regions + number);
         const T outer = column.look_up(tables_.regions + number + PupilSliceTables::kNumbers);
         return inner_weight_ * inner + outer_weight_ * outer;
     }
-    [[nodiscard]] Index<T> column(const T& panel) const {
+    [[nodiscard]] constexpr Index<T> column(const T& panel) const {
         return Index<T>(first_number_ + T(PupilSliceTables::kPerColumn) * panel);
     }
 
     /// A panel at or before the one that has the fraction of the area before it.
-    [[nodiscard]] T first_panel(const T& fraction) const {
+    [[nodiscard]] constexpr T first_panel(const T& fraction) const {
         constexpr int kSteps = PupilSliceTables::kAreaSteps;
         return look_up(tables_.panel_below, region_ * T(kSteps) + whole(fraction * T(kSteps)));
     }
 
-    [[nodiscard]] PupilPanel<T> panel_at(const T& panel) const {
+    [[nodiscard]] constexpr PupilPanel<T> panel_at(const T& panel) const {
         const Index<T> index(panel);
         const Index<T> before = column(panel);
         return {.fraction = index.look_up(tables_.panel_fractions),
@@ -171,5 +174,17 @@ class PupilSlice {
     T cosine_;
     T sine_;
 };
+
+/// The point of a region that (u, v) in the unit square maps to, or in defence of the disc.
+constexpr PupilDraw<double> draw_pupil_point(const PupilSliceTables& tables, double slice, const Vec2d& sensor_point,
+                                             double u, double v) {
+    const PupilSlice<double> region(tables, slice, sensor_point);
+    if (u < tables.defensive_fraction) {
+        const Vec2d point = tables.disc.warped(u / tables.defensive_fraction, v);
+        const double of_region = region.contains(point) ? (1.0 - tables.defensive_fraction) / region.area() : 0.0;
+        return {point, 1.0 / (tables.disc_pdf + of_region)};
+    }
+    return region.sample(u, v);
+}
 
 }  // namespace lensproof::pupil

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "engine/base/gather.h"
+
 namespace lensproof::pupil {
 
 namespace {
@@ -51,6 +53,7 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
                .panel_below = panel_below_.data(),
                .panel_fractions = fractions.at.data(),
                .per_panel = fractions.per_width.data(),
+               .disc = disc,
                .disc_radius2 = disc.radius * disc.radius,
                .disc_pdf = defensive_fraction / disc.area(),
                .defensive_fraction = defensive_fraction,
@@ -90,13 +93,7 @@ PupilDraw<double> PupilSlices::sample(Vec2d sensor_point, int slice, double u, d
         const PupilSample sample = map_.sample(sensor_point, position_of(slice, slices_), u, v);
         return {sample.point, sample.pdf > 0.0 ? 1.0 / sample.pdf : 0.0};
     }
-    const PupilSlice<double> region(tables_, slice, sensor_point);
-    if (u < tables_.defensive_fraction) {
-        const Vec2d point = map_.regions().disc().warped(u / tables_.defensive_fraction, v);
-        const double of_region = region.contains(point) ? (1.0 - tables_.defensive_fraction) / region.area() : 0.0;
-        return {point, 1.0 / (tables_.disc_pdf + of_region)};
-    }
-    return region.sample(u, v);
+    return draw_pupil_point(tables_, slice, sensor_point, u, v);
 }
 
 }  // namespace lensproof::pupil

@@ -25,6 +25,22 @@ class PupilSlices {
     /// rotationally symmetric, passes no light, or has more slices than are worth keeping: `sample` then asks the map.
     [[nodiscard]] const PupilSliceTables* tables() const { return regions_.empty() ? nullptr : &tables_; }
 
+    /// How long these tables are, for whoever copies them.
+    struct TableSizes {
+        std::size_t slices;
+        std::size_t nodes;
+        std::size_t node_below;
+        std::size_t regions;
+        std::size_t panel_below;
+    };
+    [[nodiscard]] TableSizes table_sizes() const {
+        return {.slices = per_end_.size(),
+                .nodes = map_.regions().nodes().fractions.size(),
+                .node_below = node_below_.size(),
+                .regions = regions_.size(),
+                .panel_below = panel_below_.size()};
+    }
+
   private:
     void add_slice(double position);
 

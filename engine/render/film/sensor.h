@@ -16,14 +16,14 @@ struct Sensor {
     Vec2d axis_from_middle_px{};  // where the axis meets it, to the right and down
 
     /// The pixel coordinates of that place.
-    [[nodiscard]] Vec2d axis() const {
+    [[nodiscard]] constexpr Vec2d axis() const {
         return {0.5 * (width - 1) + axis_from_middle_px.x, 0.5 * (height - 1) + axis_from_middle_px.y};
     }
-    [[nodiscard]] Vec2d position(double u, double v) const {
+    [[nodiscard]] constexpr Vec2d position(double u, double v) const {
         return {-(u - axis().x) * pixel_pitch_mm, (v - axis().y) * pixel_pitch_mm};
     }
     /// The pixel coordinates of a point, on the sensor or beyond it: `position` undone.
-    [[nodiscard]] Vec2d pixel(Vec2d position) const {
+    [[nodiscard]] constexpr Vec2d pixel(Vec2d position) const {
         return {axis().x - position.x / pixel_pitch_mm, position.y / pixel_pitch_mm + axis().y};
     }
     /// From the axis to the farthest point of it; or of what lies up to `margin_px` around it.

@@ -82,11 +82,11 @@ using PointBits = std::array<std::uint32_t, kDimensions>;
 
 /// The point of the unscrambled sequence. It is linear in the bits of `sample`: the point of a ^ b is that of a ^ that
 /// of b.
-constexpr PointBits sobol_point(std::uint32_t sample) {
+constexpr PointBits sobol_point(std::uint32_t sample, const DirectionNumbers& directions = kDirections) {
     PointBits x{};
     for (std::uint32_t rest = sample; rest != 0; rest &= rest - 1) {
         for (int d = 0; d < kDimensions; ++d) {
-            x[d] ^= kDirections[d][std::countr_zero(rest)];
+            x[d] ^= directions[d][std::countr_zero(rest)];
         }
     }
     return x;
@@ -125,8 +125,10 @@ class PixelSampler {
         }
     }
 
-    [[nodiscard]] constexpr std::array<double, kDimensions> point(std::uint32_t sample) const {
-        const sampler_detail::PointBits x = sampler_detail::sobol_point(sample);
+    /// `directions`: Sobol's, from wherever they can be read.
+    [[nodiscard]] constexpr std::array<double, kDimensions> point(
+        std::uint32_t sample, const sampler_detail::DirectionNumbers& directions = sampler_detail::kDirections) const {
+        const sampler_detail::PointBits x = sampler_detail::sobol_point(sample, directions);
         std::array<double, kDimensions> values{};
         for (int d = 0; d < kDimensions; ++d) {
             values[d] = sampler_detail::scrambled_number(sampler_detail::reversed_bits(x[d]), scramble_[d]);

@@ -1,0 +1,61 @@
+// Against the libraries' long double.
+#include "engine/base/elementary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace lensproof::elementary_test {
+
+/// Of a value, in its last place.
+template <class T>
+double error_ulp(T found, long double exact) {
+    const T rounded = static_cast<T>(exact);
+    const T ulp = std::nextafter(std::abs(rounded), std::numeric_limits<T>::infinity()) - std::abs(rounded);
+    return static_cast<double>(std::abs(static_cast<long double>(found) - exact) / static_cast<long double>(ulp));
+}
+
+template <class T>
+double worst_exponential(double deepest) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    double worst = 0.0;
+    for (int i = 0; i < 200000; ++i) {
+        const auto x = static_cast<T>(-deepest * unit(random) * (i % 2 == 0 ? 1.0 : 1e-3));
+        worst = std::max(worst, error_ulp<T>(exponential_of_negative(x), std::exp(static_cast<long double>(x))));
+    }
+    return worst;
+}
+
+// The x87's long double has eleven bits more than a double: it judges to 0.001 ulp.
+TEST(Elementary, ExponentialsAreWithinTwoUlp) {
+    EXPECT_LT(worst_exponential<double>(708.0), 2.0);
+    EXPECT_LT(worst_exponential<float>(87.0), 2.0);
+    EXPECT_EQ(exponential_of_negative(0.0), 1.0);
+    EXPECT_EQ(exponential_of_negative(-0.0F), 1.0F);
+}
+
+TEST(Elementary, ExponentialsEndAtTheSmallestNormalNumber) {
+    EXPECT_EQ(exponential_of_negative(-1e300), 0.0);
+    EXPECT_EQ(exponential_of_negative(-std::numeric_limits<double>::infinity()), 0.0);
+    EXPECT_GT(exponential_of_negative(-707.9), std::numeric_limits<double>::min());
+    EXPECT_GT(exponential_of_negative(-86.9F), std::numeric_limits<float>::min());
+    EXPECT_TRUE(std::isnan(exponential_of_negative(std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST(Elementary, SinesAreWithinTwoUlp) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> eighth(-0.7853981633974483, 0.7853981633974483);
+    double worst = 0.0;
+    for (int i = 0; i < 200000; ++i) {
+        const double x = eighth(random) * (i % 2 == 0 ? 1.0 : 1e-4);
+        const Vec2d found = cos_sin_within_eighth(x);
+        worst = std::max(worst, error_ulp(found.x, std::cos(static_cast<long double>(x))));
+        worst = std::max(worst, error_ulp(found.y, std::sin(static_cast<long double>(x))));
+    }
+    EXPECT_LT(worst, 2.0);
+}
+
+}  // namespace lensproof::elementary_test
