@@ -38,15 +38,25 @@ FilmSamples::FilmSamples(FilmSampling film, int wavelengths, std::optional<optic
       filter_(std::move(film.filter)),
       kernels_(&path_kernels(level)) {}
 
-void FilmSamples::start(const CameraPathRange& range) {
-    cursor_ = {.pixel = range.first_pixel, .sample = 0, .first_sample = range.first_sample, .samples = range.samples};
-    end_pixel_ = range.first_pixel + (range.samples > 0 ? range.pixels : 0);
+void FilmSamples::start(const CameraPathRange& range, std::uint64_t skipped) {
+    left_ = range.size() - skipped;
+    if (left_ == 0) {
+        return;
+    }
+    const CameraPathRange::Place at = range.place(skipped);
+    cursor_ = {.pixel = at.pixel,
+               .sample = at.sample,
+               .first_sample = range.first_sample,
+               .samples = range.samples,
+               .row_end = range.first_pixel + at.row * (range.pixels + range.beside_row) + range.pixels,
+               .row_pixels = range.pixels,
+               .beside_row = range.beside_row};
 }
 
 void FilmSamples::draw(int room) {
     const int whole = room < optics::kMostLanes ? room : room / optics::kMostLanes * optics::kMostLanes;
-    const std::uint64_t left = std::uint64_t{end_pixel_ - cursor_.pixel} * cursor_.samples - cursor_.sample;
-    const auto count = static_cast<int>(std::min<std::uint64_t>(left, std::min(whole, kPathChunk)));
+    const auto count = static_cast<int>(std::min<std::uint64_t>(left_, std::min(whole, kPathChunk)));
+    left_ -= static_cast<std::uint64_t>(count);
     kernels_->draw_samples(sampling_, count, cursor_, starts_);
     draw_from_filter();
 }

@@ -64,14 +64,6 @@ struct CameraPathBuffer {
 /// lies.
 Vec2d path_pixel(const CameraPathBuffer& paths, std::size_t path, const Sensor& sensor, bool is_box);
 
-/// Samples of consecutive pixels: of each pixel the same.
-struct CameraPathRange {
-    std::uint32_t first_pixel = 0;
-    std::uint32_t pixels = 0;
-    std::uint32_t first_sample = 0;
-    std::uint32_t samples = 0;
-};
-
 /// Where the samples of a render lie on the film.
 struct FilmSampling {
     Sensor sensor;
@@ -86,15 +78,15 @@ class FilmSamples {
     /// `level`: of the packets, as `trace_batch` has it.
     FilmSamples(FilmSampling film, int wavelengths, std::optional<optics::SimdLevel> level = {});
 
-    /// Begins a range. What was left of the one before is dropped.
-    void start(const CameraPathRange& range);
+    /// Begins a range, at its `skipped`-th sample. What was left of the one before is dropped.
+    void start(const CameraPathRange& range, std::uint64_t skipped = 0);
 
     /// Replaces what is in the buffer by the next paths, as many as fit: at least one, but for the end of the range.
     /// False when none is left. `append(starts)` adds those that begin with these samples.
     template <class Append>
     bool fill(CameraPathBuffer& buffer, const Append& append) {
         buffer.size = 0;
-        while (cursor_.pixel < end_pixel_) {
+        while (left_ > 0) {
             const int room = buffer.capacity - buffer.size;
             if (room < optics::kMostLanes && buffer.size > 0) {
                 break;
@@ -115,7 +107,7 @@ class FilmSamples {
     PixelFilter filter_;
     const PathKernels* kernels_;
     PathCursor cursor_;
-    std::uint32_t end_pixel_ = 0;
+    std::uint64_t left_ = 0;  // samples of the range
     PathStarts starts_{};
 };
 

@@ -21,7 +21,7 @@ class BasicLensPaths {
                    std::optional<optics::SimdLevel> level = {});
 
     /// As `FilmSamples` has them.
-    void start(const CameraPathRange& range) { samples_.start(range); }
+    void start(const CameraPathRange& range, std::uint64_t skipped = 0) { samples_.start(range, skipped); }
     bool fill(CameraPathBuffer& buffer);
 
     /// Paths that were started since the construction, stopped ones included; samples where the film gets no light are

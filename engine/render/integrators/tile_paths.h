@@ -19,18 +19,20 @@ class TilePaths {
     void for_each(const TileSamples& samples, FilmTile& tile, const Add& add) {
         const PixelRect& rect = samples.rect;
         const std::int64_t started_before = paths_.started();
-        for (int y = rect.y; y < rect.y + rect.height; ++y) {
-            const std::uint32_t first_pixel =
-                static_cast<std::uint32_t>(y) * width_ + static_cast<std::uint32_t>(rect.x);
-            paths_.start({.first_pixel = first_pixel,
-                          .pixels = static_cast<std::uint32_t>(rect.width),
-                          .first_sample = samples.first,
-                          .samples = samples.end - samples.first});
-            const std::size_t first_of_row = tile.pixel(rect.x, y);
-            while (paths_.fill(buffer_)) {
-                for (std::size_t i = 0; i < static_cast<std::size_t>(buffer_.size); ++i) {
-                    add(buffer_, i, first_of_row + (buffer_.pixel[i] - first_pixel));
-                }
+        const auto columns = static_cast<std::uint32_t>(rect.width);
+        const std::uint32_t first_pixel =
+            static_cast<std::uint32_t>(rect.y) * width_ + static_cast<std::uint32_t>(rect.x);
+        paths_.start({.first_pixel = first_pixel,
+                      .pixels = columns,
+                      .first_sample = samples.first,
+                      .samples = samples.end - samples.first,
+                      .rows = static_cast<std::uint32_t>(rect.height),
+                      .beside_row = width_ - columns});
+        while (paths_.fill(buffer_)) {
+            for (std::size_t i = 0; i < static_cast<std::size_t>(buffer_.size); ++i) {
+                const std::uint32_t from_first = buffer_.pixel[i] - first_pixel;
+                const std::uint32_t row = from_first / width_;
+                add(buffer_, i, std::size_t{row} * columns + (from_first - row * width_));
             }
         }
         tile.count_rays(static_cast<std::uint64_t>(paths_.started() - started_before));

@@ -39,12 +39,41 @@ struct PathSampling {
     int wavelengths = 1;
 };
 
+/// Samples of consecutive pixels, or of a rectangle of them: of each pixel the same.
+struct CameraPathRange {
+    std::uint32_t first_pixel = 0;
+    std::uint32_t pixels = 0;  // in a row
+    std::uint32_t first_sample = 0;
+    std::uint32_t samples = 0;
+    std::uint32_t rows = 1;
+    std::uint32_t beside_row = 0;  // pixels between the end of a row and the begin of the next
+
+    [[nodiscard]] constexpr std::uint64_t size() const { return std::uint64_t{pixels} * rows * samples; }
+
+    /// Which the i-th is.
+    struct Place {
+        std::uint32_t pixel = 0;
+        std::uint32_t sample = 0;  // counted from `first_sample`
+        std::uint32_t row = 0;
+    };
+    [[nodiscard]] constexpr Place place(std::uint64_t i) const {
+        const auto number = static_cast<std::uint32_t>(i / samples);
+        const std::uint32_t row = number / pixels;
+        return {.pixel = first_pixel + number + row * beside_row,
+                .sample = static_cast<std::uint32_t>(i - std::uint64_t{number} * samples),
+                .row = row};
+    }
+};
+
 /// The next samples to draw: `samples` of each pixel from `first_sample` on.
 struct PathCursor {
     std::uint32_t pixel = 0;
     std::uint32_t sample = 0;  // counted from `first_sample`
     std::uint32_t first_sample = 0;
     std::uint32_t samples = 0;
+    std::uint32_t row_end = 0;  // behind the last pixel of the row that this one is in
+    std::uint32_t row_pixels = 0;
+    std::uint32_t beside_row = 0;  // pixels from a row's end to the next one's begin
 };
 
 }  // namespace lensproof::render

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "engine/base/pack.h"
+#include "engine/render/camera/packet/aim.h"
 #include "engine/render/camera/packet/path_kernels.h"
 #include "engine/render/sampling/sampler.h"
 
@@ -50,7 +51,10 @@ template <class Abi>
         cursor.sample += static_cast<std::uint32_t>(run);
         if (cursor.sample == cursor.samples) {
             cursor.sample = 0;
-            ++cursor.pixel;
+            if (++cursor.pixel == cursor.row_end) {
+                cursor.pixel += cursor.beside_row;
+                cursor.row_end += cursor.row_pixels + cursor.beside_row;
+            }
         }
     }
     for (int i = 0; i < count; ++i) {
@@ -80,15 +84,12 @@ template <class Abi>
     using Numbers = Pack<double, Abi>;
     const Numbers z(film_z);
     const Numbers to_pupil_z(pupil_z - film_z);
-    const Numbers heading(pupil_z < film_z ? 1.0 : -1.0);  // reverse rays have z < 0 (optics::reverse_ray)
     for (int i = 0; i < starts.size; i += Numbers::kLanes) {
         const Numbers x = Numbers::load(starts.film_x.data() + i);
         const Numbers y = Numbers::load(starts.film_y.data() + i);
-        const Vec3<Numbers> to_pupil{Numbers::load(starts.pupil_x.data() + i) - x,
-                                     Numbers::load(starts.pupil_y.data() + i) - y, to_pupil_z};
-        const Numbers per_distance2 = Numbers(1.0) / dot(to_pupil, to_pupil);
-        const Vec3<Numbers> direction = heading * sqrt(per_distance2) * to_pupil;
-        const Numbers etendue = direction.z * direction.z * per_distance2 * Numbers::load(starts.pupil_area.data() + i);
+        const auto [direction, etendue] =
+            aim<Numbers>({x, y}, {Numbers::load(starts.pupil_x.data() + i), Numbers::load(starts.pupil_y.data() + i)},
+                         to_pupil_z, Numbers::load(starts.pupil_area.data() + i));
         etendue.store(starts.etendue.data() + i);
         x.store(rays.origin.x.data() + i);
         y.store(rays.origin.y.data() + i);

@@ -1,58 +1,23 @@
 #include "engine/render/camera/lens_paths.h"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
-#include "engine/formats/prescription/load_lens.h"
-#include "engine/optics/lens.h"
 #include "engine/render/sampling/sampler.h"
+#include "tests/engine/render/camera/some_paths.h"
 
 namespace lensproof::render::lens_paths_test {
 
-constexpr std::uint64_t kSeed = 17;
-const std::vector<double> kWavelengths = {430.0, 490.0, 550.0, 610.0, 670.0};
-
-/// A camera whose corners lie outside its image circle, so that some pixels lose a part of their paths and some all.
-struct TestCamera {
-    explicit TestCamera(const std::string& name, double half_diagonal_mm, bool by_radius = true)
-        : lens(optics::at_wavelengths<double>(formats::load_lens(name), kWavelengths)),
-          pupil(lens.at(), by_radius, half_diagonal_mm),
-          slices(pupil, lens.wavelengths()),
-          film{.sensor = {.width = 8, .height = 6, .pixel_pitch_mm = half_diagonal_mm / 5.0}, .seed = kSeed} {}
-
-    optics::SpectralLens<double> lens;
-    pupil::PupilMap pupil;
-    pupil::PupilSlices slices;
-    FilmSampling film;
-};
-
-struct Path {
-    std::uint32_t pixel = 0;
-    std::uint32_t sample = 0;
-    int wavelength = 0;
-    Vec2d film;
-    double weight = 0.0;
-    Ray<double> exit;
-    friend bool operator==(const Path& a, const Path& b) {
-        return a.pixel == b.pixel && a.sample == b.sample && a.wavelength == b.wavelength && a.film == b.film &&
-               a.weight == b.weight && a.exit.origin == b.exit.origin && a.exit.direction == b.exit.direction;
-    }
-};
-
-struct Paths {
-    std::vector<Path> valid;
-    std::int64_t started = 0;
-};
+using namespace camera_test;
 
 /// What passes the lens of a range of samples, worked out path by path.
 Paths one_by_one(const TestCamera& camera, const CameraPathRange& range) {
     const Sensor& sensor = camera.film.sensor;
     const double film_z = camera.lens.at(0).image_z;
     Paths found;
-    for (std::uint32_t pixel = range.first_pixel; pixel < range.first_pixel + range.pixels; ++pixel) {
+    for (std::uint32_t i = 0; i < range.pixels * range.rows; ++i) {
+        const std::uint32_t pixel = range.first_pixel + i + i / range.pixels * range.beside_row;
         const PixelSampler sampler(kSeed, pixel);
         const std::uint32_t row = pixel / 8;
         for (std::uint32_t sample = range.first_sample; sample < range.first_sample + range.samples; ++sample) {
@@ -79,36 +44,7 @@ Paths one_by_one(const TestCamera& camera, const CameraPathRange& range) {
 }
 
 Paths through_buffers(const TestCamera& camera, const CameraPathRange& range, int capacity, optics::SimdLevel level) {
-    LensPaths paths(camera.film, camera.lens, camera.slices, level);
-    CameraPathBuffer buffer(capacity);
-    Paths found;
-    paths.start(range);
-    while (paths.fill(buffer)) {
-        EXPECT_GT(buffer.size, 0);
-        EXPECT_LE(buffer.size, capacity);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(buffer.size); ++i) {
-            found.valid.push_back({buffer.pixel[i],
-                                   buffer.sample[i],
-                                   buffer.wavelength[i],
-                                   {buffer.film_x[i], buffer.film_y[i]},
-                                   buffer.weight[i],
-                                   buffer.ray(i)});
-        }
-    }
-    EXPECT_FALSE(paths.fill(buffer)) << "the end stays the end";
-    found.started = paths.started();
-    return found;
-}
-
-/// Tells which path is another rather than all.
-void expect_same(const Paths& found, const Paths& expected, const std::string& where) {
-    EXPECT_EQ(found.started, expected.started) << where;
-    ASSERT_EQ(found.valid.size(), expected.valid.size()) << where;
-    for (std::size_t i = 0; i < found.valid.size(); ++i) {
-        ASSERT_TRUE(found.valid[i] == expected.valid[i])
-            << where << ", path " << i << ": pixel " << expected.valid[i].pixel << ", sample "
-            << expected.valid[i].sample;
-    }
+    return all_paths(LensPaths(camera.film, camera.lens, camera.slices, level), range, capacity);
 }
 
 // Every path has the bits of the plain manner of making it, and its place in the order, whatever the packets' width and
@@ -137,6 +73,19 @@ TEST(LensPaths, DoNotDependOnTheRange) {
     const CameraPathRange part{.first_pixel = 19, .pixels = 5, .first_sample = 250, .samples = 12};
     expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
                 "part");
+}
+
+// As tiles are, of which rows are a part of the film's.
+TEST(LensPaths, OfARectangleGoRowByRow) {
+    const TestCamera camera("tessar", 70.0);
+    const CameraPathRange tile{
+        .first_pixel = 10, .pixels = 3, .first_sample = 7, .samples = 21, .rows = 4, .beside_row = 5};
+    const Paths expected = one_by_one(camera, tile);
+    for (const optics::SimdLevel level : optics::available_simd_levels()) {
+        for (const int capacity : {1, 16, 50, 4096}) {
+            expect_same(through_buffers(camera, tile, capacity, level), expected, "tile");
+        }
+    }
 }
 
 // A lens that is not known to be round has no tables of pupils for packets.
