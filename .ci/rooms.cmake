@@ -38,7 +38,8 @@ function(lensproof_room folder)
     cmake_parse_arguments(ARG "" "" "USES;LINKS;EXPOSES" ${ARGN})
     string(REPLACE "/" "_" room ${folder})
     file(GLOB files CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/${folder}/*.h"
-         "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
+         "${PROJECT_SOURCE_DIR}/${folder}/*.cpp" "${PROJECT_SOURCE_DIR}/${folder}/*.cuh"
+         "${PROJECT_SOURCE_DIR}/${folder}/*.cu")
     list(TRANSFORM files PREPEND "${PROJECT_SOURCE_DIR}/" OUTPUT_VARIABLE sources)
     set(stamp "${CMAKE_BINARY_DIR}/rooms/${room}")
     add_custom_command(
@@ -50,7 +51,10 @@ function(lensproof_room folder)
         COMMENT ""
         VERBATIM)
     add_custom_target(${room}_includes DEPENDS "${stamp}")  # by itself: no file of a room waits for another room's library
-    list(FILTER sources INCLUDE REGEX "\\.cpp$")
+    list(FILTER sources INCLUDE REGEX "\\.(cpp|cu)$")
+    if(NOT LENSPROOF_CUDA)
+        list(FILTER sources EXCLUDE REGEX "\\.cu$")
+    endif()
     if(NOT LENSPROOF_AVX)
         list(FILTER sources EXCLUDE REGEX "_avx[0-9]+\\.cpp$")
     endif()

@@ -1,0 +1,103 @@
+#include "engine/optics/device/device_lens.h"
+
+namespace lensproof::optics {
+
+namespace {
+
+/// Where a special surface's own arrays lie.
+template <class T>
+struct SpecialPlaces {
+    ParcelPlace<TraceLayer<T>> layers;
+    ParcelPlace<StopOpening::Edge> edges;
+    ParcelPlace<float> texture;
+};
+
+template <class T>
+SpecialPlaces<T> pack_special(Parcel& parcel, const SpecialSurface<T>& special) {
+    const StopOpening opening = special.mask.opening();
+    return {.layers = parcel.add(special.coating.layers),
+            .edges = parcel.add(opening.edges),
+            .texture = parcel.add(opening.texture)};
+}
+
+template <class T>
+typename LensView<T>::Special special_on_device(const Parcel& parcel, const SpecialSurface<T>& from,
+                                                const SpecialPlaces<T>& places) {
+    StopOpening mask = from.mask.opening();
+    mask.edges = parcel.span(places.edges);
+    mask.texture = parcel.span(places.texture);
+    return {.has_shape = from.has_shape,
+            .shape = from.shape,
+            .vertex = from.vertex,
+            .axes = from.axes,
+            .coating = {.layers = parcel.span(places.layers),
+                        .reflectance = from.coating.reflectance,
+                        .is_mirror = from.coating.is_mirror},
+            .mask = mask,
+            .thin = from.thin};
+}
+
+/// What depends on the wavelength, in the order of LensView.
+template <class T>
+std::vector<T> index_table(const SpectralLens<T>& lens) {
+    std::vector<T> table;
+    const auto append = [&](const T* column) { table.insert(table.end(), column, column + lens.wavelengths()); };
+    for (const typename SpectralLens<T>::Indices& of : lens.indices()) {
+        append(of.before);
+        append(of.after);
+        append(of.forward_ratio);
+        append(of.reverse_ratio);
+    }
+    return table;
+}
+
+template <class T>
+std::vector<T> attenuation_table(const SpectralLens<T>& lens) {
+    std::vector<T> table;
+    const auto append = [&](const T* column) { table.insert(table.end(), column, column + lens.wavelengths()); };
+    if (lens.absorbs()) {
+        append(lens.indices().front().attenuation_before);
+        for (const typename SpectralLens<T>::Indices& of : lens.indices()) {
+            append(of.attenuation_after);
+        }
+    }
+    return table;
+}
+
+}  // namespace
+
+template <class T>
+DeviceLens<T>::DeviceLens(const Device& device, const SpectralLens<T>& lens) {
+    const auto surfaces = parcel_.add(lens.at().front().surfaces);
+    const auto indices = parcel_.add(index_table(lens));
+    const auto attenuation = parcel_.add(attenuation_table(lens));
+    std::vector<SpecialPlaces<T>> places;
+    for (const TraceLens<T>& at : lens.at()) {
+        for (const SpecialSurface<T>& special : at.specials) {
+            places.push_back(pack_special(parcel_, special));
+        }
+    }
+    const auto specials = parcel_.reserve<typename LensView<T>::Special>(places.size());
+    parcel_.allocate(device);
+    std::vector<typename LensView<T>::Special> on_device;
+    for (const TraceLens<T>& at : lens.at()) {
+        for (const SpecialSurface<T>& special : at.specials) {
+            on_device.push_back(special_on_device(parcel_, special, places[on_device.size()]));
+        }
+    }
+    parcel_.set(specials, std::span<const typename LensView<T>::Special>(on_device));
+    parcel_.send(device);
+    view_ = {.surfaces = parcel_.address(surfaces),
+             .indices = parcel_.address(indices),
+             .specials = parcel_.address(specials),
+             .attenuation = lens.absorbs() ? parcel_.address(attenuation) : nullptr,
+             .surface_count = lens.surfaces(),
+             .special_count = static_cast<int>(lens.at().front().specials.size()),
+             .wavelengths = lens.wavelengths(),
+             .image_z = lens.at().front().image_z};
+}
+
+template class DeviceLens<float>;
+template class DeviceLens<double>;
+
+}  // namespace lensproof::optics

@@ -1,0 +1,20 @@
+#include "engine/optics/device/trace_job.h"
+
+#include "engine/device/launch.cuh"
+
+using namespace lensproof::optics;
+
+#define LENSPROOF_TRACE_JOBS(T, direction, rims)                                           \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::geometry, false>);            \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::transmittance, false>);       \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, false>);                 \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, true>)
+
+LENSPROOF_TRACE_JOBS(float, Direction::forward, Rims::clip);
+LENSPROOF_TRACE_JOBS(float, Direction::reverse, Rims::clip);
+LENSPROOF_TRACE_JOBS(float, Direction::forward, Rims::follow);
+LENSPROOF_TRACE_JOBS(float, Direction::reverse, Rims::follow);
+LENSPROOF_TRACE_JOBS(double, Direction::forward, Rims::clip);
+LENSPROOF_TRACE_JOBS(double, Direction::reverse, Rims::clip);
+LENSPROOF_TRACE_JOBS(double, Direction::forward, Rims::follow);
+LENSPROOF_TRACE_JOBS(double, Direction::reverse, Rims::follow);

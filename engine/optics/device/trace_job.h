@@ -1,0 +1,105 @@
+// engine/optics/device/trace_job.h — given rays through a lens, an item a ray.
+#pragma once
+#include "engine/optics/device/lens_view.h"
+#include "engine/optics/ghost_path.h"
+#include "engine/optics/packet/ray_batch.h"
+#include "engine/optics/packet/trace_batch.h"
+
+namespace lensproof::optics {
+
+/// As `trace_columns`, in columns of the device's memory; those that `carry` does not ask for are not looked at.
+/// `has_specials`: as `trace_through` has it.
+template <class T, Direction direction, Rims rims, Carry carry, bool has_specials>
+struct TraceJob {
+    static constexpr int kThreadsPerBlock = 128;
+
+    LensView<T> lens;
+    RayColumns<T> rays;
+
+    constexpr void operator()(int item) const {
+        const auto i = static_cast<std::size_t>(item);
+        const Ray<T> ray{{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
+        const typename LensView<T>::AtWavelength at = lens.at(lens.wavelengths > 1 ? rays.wavelength[i] : 0);
+        const TracedRay<T> traced =
+            trace_through<direction, rims, has_specials>(at, ray, [](const SurfaceEvent<T>&) {});
+        rays.x[i] = traced.ray.origin.x;
+        rays.y[i] = traced.ray.origin.y;
+        rays.z[i] = traced.ray.origin.z;
+        rays.dx[i] = traced.ray.direction.x;
+        rays.dy[i] = traced.ray.direction.y;
+        rays.dz[i] = traced.ray.direction.z;
+        if constexpr (carry != Carry::geometry) {
+            rays.transmittance[i] = traced.transmittance;
+        }
+        if constexpr (carry == Carry::all) {
+            rays.optical_path[i] = traced.optical_path;
+        }
+        rays.status[i] = traced.status;
+        rays.surface[i] = static_cast<std::int16_t>(traced.surface);
+    }
+};
+
+/// The job that `settings` ask for, of those that are compiled: lenses with more than spheres carry all, which is the
+/// least of their cost.
+template <Direction direction, class T, class Use>
+void with_trace_job(const LensView<T>& lens, const RayColumns<T>& rays, Rims rims, Carry carry, const Use& use) {
+    const auto with_rims = [&]<Rims with>() {
+        if (lens.has_more_than_spheres()) {
+            use(TraceJob<T, direction, with, Carry::all, true>{lens, rays});
+        } else if (carry == Carry::geometry) {
+            use(TraceJob<T, direction, with, Carry::geometry, false>{lens, rays});
+        } else if (carry == Carry::transmittance) {
+            use(TraceJob<T, direction, with, Carry::transmittance, false>{lens, rays});
+        } else {
+            use(TraceJob<T, direction, with, Carry::all, false>{lens, rays});
+        }
+    };
+    rims == Rims::clip ? with_rims.template operator()<Rims::clip>() : with_rims.template operator()<Rims::follow>();
+}
+
+/// What `trace` and `trace_ghost` report, event by event: of ray i those from i · `most_events` on.
+template <class T>
+struct EventJob {
+    static constexpr int kThreadsPerBlock = 128;
+
+    LensView<T> lens;
+    const Ray<T>* rays = nullptr;
+    const std::uint16_t* wavelength = nullptr;
+    SurfaceEvent<T>* events = nullptr;
+    std::int32_t* event_counts = nullptr;
+    TracedRay<T>* ends = nullptr;
+    int most_events = 0;
+    Direction direction = Direction::forward;
+    Rims rims = Rims::clip;
+    std::span<const int> reflections;  // empty: through the lens
+    StrayMirrors<T> mirrors;
+
+    constexpr void operator()(int item) const {
+        const auto i = static_cast<std::size_t>(item);
+        SurfaceEvent<T>* to = events + i * static_cast<std::size_t>(most_events);
+        int count = 0;
+        ends[i] = traced(rays[i], lens.at(wavelength[i]), [&](const SurfaceEvent<T>& event) { to[count++] = event; });
+        event_counts[i] = count;
+    }
+
+  private:
+    template <class Visitor>
+    constexpr TracedRay<T> traced(const Ray<T>& ray, const typename LensView<T>::AtWavelength& at,
+                                  const Visitor& visit) const {
+        if (rims == Rims::clip) {
+            return traced_with<Rims::clip>(ray, at, visit);
+        }
+        return traced_with<Rims::follow>(ray, at, visit);
+    }
+    template <Rims with, class Visitor>
+    constexpr TracedRay<T> traced_with(const Ray<T>& ray, const typename LensView<T>::AtWavelength& at,
+                                       const Visitor& visit) const {
+        if (!reflections.empty()) {
+            return trace_ghost<Direction::forward, with>(at, reflections, ray, mirrors, visit);
+        }
+        return direction == Direction::forward ? trace_through<Direction::forward, with, true>(at, ray, visit)
+                                               : trace_through<Direction::reverse, with, true>(at, ray, visit);
+    }
+};
+
+}  // namespace lensproof::optics
