@@ -106,6 +106,18 @@ Camera::Optics Camera::make_optics(bool meets_light_paths) const {
     return Optics(std::in_place_type<IdealCamera>, std::move(at));
 }
 
+void Camera::fill_on(std::shared_ptr<PathDevice> device) {
+    auto* exact = std::get_if<ExactCamera>(&optics_);
+    if (exact == nullptr) {
+        throw InputError(fmt::format("a device traces lenses, and the camera's model is {}", name_of(settings_.model)));
+    }
+    if (!film_.filter.is_box()) {
+        throw InputError(
+            fmt::format("a device draws film points from the box, and the pixel filter is {}", film_.filter.name()));
+    }
+    exact->fill_on(std::move(device));
+}
+
 CameraPaths Camera::paths(std::uint64_t seed, PathCarry carry) const {
     const FilmSampling film{.sensor = sensor(), .seed = seed, .filter = film_.filter};
     return std::visit(

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -78,6 +79,10 @@ class Camera {
            const PixelFilter& filter, const Cache& cache, bool meets_light_paths = false);
     Camera(const Camera&) = delete;
     Camera& operator=(const Camera&) = delete;
+
+    /// From now on a device fills buffers of paths, to the same bits. Throws InputError where it cannot (paths of
+    /// another model than the exact ones, another filter than the box, ExactCamera::fill_on), and DeviceError.
+    void fill_on(std::shared_ptr<PathDevice> device);
 
     [[nodiscard]] CameraPaths paths(std::uint64_t seed, PathCarry carry) const;
     [[nodiscard]] FilmImportance importance(const Ray<double>& ray, const spectral::PathWavelengths& path) const;

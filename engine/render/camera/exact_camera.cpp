@@ -1,8 +1,10 @@
 #include "engine/render/camera/exact_camera.h"
 
 #include <cmath>
+#include <utility>
 
 #include "engine/base/infinity.h"
+#include "engine/base/input_error.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/pupil/kept_maps.h"
 
@@ -24,6 +26,20 @@ ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wa
     }
 }
 
+void ExactCamera::fill_on(std::shared_ptr<PathDevice> device) {
+    if (slices_.tables() == nullptr) {
+        throw InputError(
+            "paths of this lens are drawn by what a device has not: it is not rotationally symmetric, or "
+            "has more than 256 wavelengths");
+    }
+    if (in_float_) {
+        on_device_.emplace(std::in_place_type<DeviceCamera<float>>, device->device(), *in_float_, slices_);
+    } else {
+        on_device_.emplace(std::in_place_type<DeviceCamera<double>>, device->device(), lens_, slices_);
+    }
+    device_ = std::move(device);
+}
+
 ExactCamera::Paths::Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
                           PathCarry carry)
     : traced_(traced(camera, film, grid)), carry_(carry), is_shared_(film.filter.is_box()) {}
@@ -31,8 +47,14 @@ ExactCamera::Paths::Paths(const ExactCamera& camera, const FilmSampling& film, c
 ExactCamera::Paths::TracedInEither ExactCamera::Paths::traced(const ExactCamera& camera, const FilmSampling& film,
                                                               const spectral::SpectralGrid& grid) {
     const auto in = [&]<class T>(const optics::SpectralLens<T>& lens) -> TracedInEither {
-        return Traced<T>{.paths = {film, lens, camera.slices_},
-                         .shared = {grid, lens, camera.slices_, film.sensor, film.filter.is_box()}};
+        BasicLensPaths<T> paths(film, lens, camera.slices_);
+        BasicSharedRays<T> shared(grid, lens, camera.slices_, film.sensor, film.filter.is_box());
+        if (camera.device_ && film.filter.is_box()) {
+            return Traced<DevicePaths, T>{.paths = {*camera.device_, std::get<DeviceCamera<T>>(*camera.on_device_),
+                                                    film, camera.pupil_.plane_z(), std::move(paths)},
+                                          .shared = std::move(shared)};
+        }
+        return Traced<BasicLensPaths, T>{.paths = std::move(paths), .shared = std::move(shared)};
     };
     return camera.in_float_ ? in(*camera.in_float_) : in(camera.lens_);
 }

@@ -1,6 +1,7 @@
 // engine/render/camera/exact_camera.h — a camera whose every ray is traced through its lens, surface by surface.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "engine/base/cache.h"
 #include "engine/pupil/entrance_map.h"
 #include "engine/pupil/pupil_slices.h"
+#include "engine/render/camera/device_paths.h"
 #include "engine/render/camera/film_importance.h"
 #include "engine/render/camera/lens_paths.h"
 #include "engine/render/camera/shared_rays.h"
@@ -32,6 +34,10 @@ class ExactCamera {
     ExactCamera(const ExactCamera&) = delete;  // slices refer to the map
     ExactCamera& operator=(const ExactCamera&) = delete;
 
+    /// From now on paths are filled there, to the same bits, the buffer's other wavelengths aside; the box's alone.
+    /// Throws DeviceError where lens and pupil do not fit, and InputError where the pupil has no tables.
+    void fill_on(std::shared_ptr<PathDevice> device);
+
     class Paths {
       public:
         Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid, PathCarry carry);
@@ -41,12 +47,13 @@ class ExactCamera {
         [[nodiscard]] std::int64_t started() const;
 
       private:
-        template <class T>
+        template <template <class> class PathsIn, class T>
         struct Traced {
-            BasicLensPaths<T> paths;
+            PathsIn<T> paths;
             BasicSharedRays<T> shared;
         };
-        using TracedInEither = std::variant<Traced<double>, Traced<float>>;
+        using TracedInEither = std::variant<Traced<BasicLensPaths, double>, Traced<BasicLensPaths, float>,
+                                            Traced<DevicePaths, double>, Traced<DevicePaths, float>>;
         static TracedInEither traced(const ExactCamera& camera, const FilmSampling& film,
                                      const spectral::SpectralGrid& grid);
 
@@ -86,6 +93,8 @@ class ExactCamera {
     /// regions.
     std::optional<pupil::EntranceMap> entrance_;
     pupil::BoundingSphere front_;
+    std::shared_ptr<PathDevice> device_;
+    std::optional<std::variant<DeviceCamera<double>, DeviceCamera<float>>> on_device_;
 };
 
 }  // namespace lensproof::render

@@ -1,0 +1,107 @@
+// engine/render/camera/device_paths.h — camera paths out of a lens, traced on a GPU.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "engine/device/parcel.h"
+#include "engine/optics/device/device_lens.h"
+#include "engine/render/camera/lens_paths.h"
+#include "engine/render/camera/packet/path_job.h"
+
+namespace lensproof::render {
+
+/// A device that fills buffers of camera paths, and who is told when it fails. Shared by all threads.
+class PathDevice {
+  public:
+    /// `on_failure(why)` is called once, by any thread.
+    PathDevice(Device device, std::function<void(const std::string& why)> on_failure)
+        : device_(std::move(device)), on_failure_(std::move(on_failure)) {}
+
+    [[nodiscard]] const Device& device() const { return device_; }
+    void tell_failure(const std::string& why);
+
+  private:
+    Device device_;
+    std::function<void(const std::string&)> on_failure_;
+    std::once_flag is_told_;
+};
+
+/// A lens with its pupil in a device's memory, for the paths of all threads.
+template <class T>
+class DeviceCamera {
+  public:
+    /// `pupil` has tables. Throws DeviceError where they do not fit.
+    DeviceCamera(const Device& device, const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil);
+
+    [[nodiscard]] const optics::LensView<T>& lens() const { return lens_.view(); }
+    [[nodiscard]] const pupil::PupilSliceTables& pupil() const { return tables_; }
+    [[nodiscard]] const sampler_detail::DirectionNumbers* directions() const { return directions_; }
+
+  private:
+    optics::DeviceLens<T> lens_;
+    Parcel parcel_;
+    pupil::PupilSliceTables tables_;
+    const sampler_detail::DirectionNumbers* directions_ = nullptr;
+};
+
+/// The paths of BasicLensPaths, filled on a device a piece at a time: the next one is on its way while one is gone
+/// through. Where the device fails the paths go on from where they are on this machine's processors, with the same
+/// bits. For one thread; film points are drawn from the box.
+template <class T>
+class DevicePaths {
+  public:
+    /// All outlive this. `fallback`: the same paths on this machine.
+    DevicePaths(PathDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film, double pupil_z,
+                BasicLensPaths<T> fallback);
+
+    void start(const CameraPathRange& range);
+    bool fill(CameraPathBuffer& buffer);
+    [[nodiscard]] std::int64_t started() const { return started_ + fallback_.started(); }
+
+  private:
+    static constexpr std::size_t kPiece = std::size_t{1} << 15U;  // paths
+
+    /// Some paths, here and on the device, and the queue that they go through.
+    struct Piece {
+        explicit Piece(const Device& device);
+
+        Device::Queue queue;
+        DeviceArray<std::byte> there;
+        PinnedArray<std::byte> here;
+        std::uint64_t first = 0;  // of the range
+        std::size_t size = 0;     // 0: nothing is on its way or left
+        std::size_t next = 0;     // path to be given out
+        bool is_here = false;
+    };
+    static DevicePathColumns columns(std::byte* memory);
+
+    /// Starts the range's next paths in a piece, if there are any.
+    void start_piece(Piece& piece);
+    void give(Piece& piece, CameraPathBuffer& buffer);
+    /// Until the buffer is full or the range ends; throws DeviceError.
+    void fill_from_device(CameraPathBuffer& buffer);
+    void fall_back(const std::string& why);
+
+    PathDevice* device_;
+    const DeviceCamera<T>* camera_;
+    FilmSampling film_;
+    double pupil_z_;
+    BasicLensPaths<T> fallback_;
+    std::optional<std::array<Piece, 2>> pieces_;  // none once the device has failed
+    std::size_t current_ = 0;                     // that paths are given out of
+    CameraPathRange range_;
+    std::uint64_t started_pieces_ = 0;  // up to which sample of the range
+    std::uint64_t given_ = 0;           // likewise
+    std::int64_t started_ = 0;
+};
+
+extern template class DeviceCamera<float>;
+extern template class DeviceCamera<double>;
+extern template class DevicePaths<float>;
+extern template class DevicePaths<double>;
+
+}  // namespace lensproof::render
