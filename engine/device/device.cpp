@@ -146,18 +146,6 @@ void Device::Queue::download(void* to, const void* from, std::size_t bytes) {
     std::memcpy(to, from, bytes);
 }
 
-void Device::Queue::clear(void* at, std::size_t bytes) {
-#ifdef LENSPROOF_CUDA
-    if (void* stream = stream_or_none()) {
-        check(cudaMemsetAsync(at, 0, bytes, static_cast<cudaStream_t>(stream)), "a GPU's memory");
-        return;
-    }
-#else
-    (void)stream_or_none();
-#endif
-    std::memset(at, 0, bytes);
-}
-
 void Device::Queue::wait() {
 #ifdef LENSPROOF_CUDA
     if (void* stream = stream_or_none()) {

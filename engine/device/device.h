@@ -23,9 +23,6 @@ class DeviceError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// As `--device` has it.
-enum class DeviceChoice { cpu, cuda, automatic };
-
 /// Starts a job for `count` items on a GPU's stream. One definition a job, in its .cu file.
 template <class Job>
 void launch_on_gpu(const Job& job, int count, void* stream);
@@ -55,7 +52,6 @@ class Device {
         /// caller up.
         void upload(void* to, const void* from, std::size_t bytes);
         void download(void* to, const void* from, std::size_t bytes);
-        void clear(void* at, std::size_t bytes);
 
         template <class Job>
         void run(const Job& job, int count) {
@@ -114,26 +110,5 @@ class DeviceMemory {
   private:
     std::shared_ptr<void> memory_;
 };
-
-/// `size` numbers of a trivial type there, not set.
-template <class T, DeviceMemory::Place place>
-class ArrayOn {
-    static_assert(std::is_trivially_copyable_v<T>);
-
-  public:
-    ArrayOn(const Device& device, std::size_t size) : memory_(device, place, size * sizeof(T)), size_(size) {}
-
-    [[nodiscard]] T* data() const { return static_cast<T*>(memory_.get()); }
-    [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] std::size_t bytes() const { return size_ * sizeof(T); }
-
-  private:
-    DeviceMemory memory_;
-    std::size_t size_;
-};
-template <class T>
-using DeviceArray = ArrayOn<T, DeviceMemory::Place::device>;
-template <class T>
-using PinnedArray = ArrayOn<T, DeviceMemory::Place::pinned>;
 
 }  // namespace lensproof

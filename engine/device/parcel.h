@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "engine/device/device.h"
+#include "engine/device/device_buffer.h"
 
 namespace lensproof {
 
@@ -36,8 +36,7 @@ class Parcel {
     template <class T>
     ParcelPlace<T> reserve(std::size_t size) {
         static_assert(std::is_trivially_copyable_v<T>);
-        constexpr std::size_t kLine = 128;  // of a GPU's cache
-        const std::size_t offset = (bytes_.size() + kLine - 1) / kLine * kLine;
+        const std::size_t offset = in_device_lines(bytes_.size());
         bytes_.resize(offset + size * sizeof(T));
         return {offset, size};
     }
@@ -48,12 +47,13 @@ class Parcel {
         }
     }
 
-    void allocate(const Device& device) { memory_.emplace(device, bytes_.size() + 1); }
+    void allocate(const Device& device) { memory_.emplace(device, DeviceMemory::Place::device, bytes_.size() + 1); }
 
     /// On the device; this outlives it.
     template <class T>
     [[nodiscard]] const T* address(const ParcelPlace<T>& place) const {
-        return static_cast<const T*>(static_cast<const void*>(memory_->data() + place.offset));
+        return static_cast<const T*>(
+            static_cast<const void*>(static_cast<const std::byte*>(memory_->get()) + place.offset));
     }
     template <class T>
     [[nodiscard]] std::span<const T> span(const ParcelPlace<T>& place) const {
@@ -62,14 +62,14 @@ class Parcel {
 
     void send(const Device& device) {
         Device::Queue queue(device);
-        queue.upload(memory_->data(), bytes_.data(), bytes_.size());
+        queue.upload(memory_->get(), bytes_.data(), bytes_.size());
         queue.wait();
         bytes_ = {};
     }
 
   private:
     std::vector<std::byte> bytes_;
-    std::optional<DeviceArray<std::byte>> memory_;
+    std::optional<DeviceMemory> memory_;
 };
 
 }  // namespace lensproof

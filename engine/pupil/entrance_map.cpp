@@ -39,7 +39,8 @@ RegionMap direction_map(const std::vector<optics::TraceLens<double>>& band, cons
     const NodeSearch search{.disc = {beam_along(front, {0.0, 0.0, 1.0}, distance_mm).radius},
                             .by_radius = by_angle,
                             .end = kWidestAngle,
-                            .most_excess = settings.most_excess};
+                            .most_excess = settings.most_excess,
+                            .device = settings.device};
     return {search.disc, settings.defensive_fraction,
             find_pupil_nodes(band, rays_of_directions(front, distance_mm), search)};
 }

@@ -16,8 +16,7 @@ namespace {
 std::string key_of(const std::vector<optics::TraceLens<double>>& band, bool is_symmetric, double extent,
                    const PupilMapSettings& settings) {
     std::string key(kSourceDigest);
-    const auto& [defensive_fraction, most_excess] = settings;
-    append_bytes(key, is_symmetric, extent, defensive_fraction, most_excess, band.size());
+    append_bytes(key, is_symmetric, extent, settings.defensive_fraction, settings.most_excess, band.size());
     for (optics::TraceLens<double> lens : band) {
         open_stop(lens);
         optics::append_lens_bytes(key, lens);

@@ -21,9 +21,12 @@ RayFamily rays_from_sensor(double image_z, double plane_z) {
 RegionMap sensor_map(const std::vector<optics::TraceLens<double>>& band, const RearDisc& disc, bool by_radius,
                      double sensor_radius_mm, const PupilMapSettings& settings) {
     return {disc, settings.defensive_fraction,
-            find_pupil_nodes(
-                band, rays_from_sensor(band.front().image_z, disc.plane_z),
-                {.disc = disc, .by_radius = by_radius, .end = sensor_radius_mm, .most_excess = settings.most_excess})};
+            find_pupil_nodes(band, rays_from_sensor(band.front().image_z, disc.plane_z),
+                             {.disc = disc,
+                              .by_radius = by_radius,
+                              .end = sensor_radius_mm,
+                              .most_excess = settings.most_excess,
+                              .device = settings.device})};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/device/shared_device.h"
 #include "engine/optics/trace.h"
 #include "engine/pupil/rear_disc.h"
 #include "engine/pupil/region_map.h"
@@ -18,6 +19,8 @@ struct PupilMapSettings {
     /// Steps in radius, azimuth and wavelength are halved until regions between two nodes have to be enlarged by no
     /// more than this fraction of their area. Steps below 1/64 of the radius, where few points lie, may need more.
     double most_excess = 0.005;
+    /// That traces rays, or null; the map is the same.
+    SharedDevice* device = nullptr;
 };
 
 /// Draws paths' first points: for a point of the sensor, points of the pupil through which light may reach it, evenly

@@ -67,7 +67,7 @@ class NodeFinder {
         : search_(search),
           most_excess_((search.by_radius ? 1.0 : kExcessOverAzimuth) * search.most_excess),
           last_lens_(band.size() - 1),
-          stations_(band, rays, search.disc, symmetry_of(search)) {
+          stations_(band, rays, search.disc, symmetry_of(search), search.device) {
         nodes_.symmetry = symmetry_of(search);
         nodes_.azimuths = search.by_radius ? 1 : kFirstAzimuths;
     }

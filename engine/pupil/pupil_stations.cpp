@@ -53,11 +53,12 @@ Ray<double> PupilStations::ray(const StationPlace& place, Vec2d own_point) const
 
 /// In batches, whose rays have each their own wavelength.
 void PupilStations::ask(const std::vector<Request>& requests, std::span<const RegionPoint> points,
-                        std::span<std::uint8_t> answers) const {
-    constexpr std::size_t kMost = 1024;
-    optics::RayBatch<double> batch(static_cast<int>(std::min(kMost, points.size())));
-    for (std::size_t first = 0; first < points.size(); first += kMost) {
-        const std::size_t count = std::min(kMost, points.size() - first);
+                        std::span<std::uint8_t> answers) {
+    // A core's cache holds so many; a device wants more.
+    const std::size_t most = tracer_.is_on_device() ? optics::ColumnTracer<double>::kUsualPiece : 1024;
+    optics::RayBatch<double> batch(static_cast<int>(std::min(most, points.size())));
+    for (std::size_t first = 0; first < points.size(); first += most) {
+        const std::size_t count = std::min(most, points.size() - first);
         batch.size = static_cast<int>(count);
         for (std::size_t i = 0; i < count; ++i) {
             const RegionPoint& point = points[first + i];
@@ -65,10 +66,10 @@ void PupilStations::ask(const std::vector<Request>& requests, std::span<const Re
             batch.set(static_cast<int>(i), ray(place, point.point));
             batch.wavelength[i] = static_cast<std::uint16_t>(place.lens);
         }
-        const auto trace_all = rays_.direction == optics::Direction::forward
-                                   ? optics::trace_batch<optics::Direction::forward, double>
-                                   : optics::trace_batch<optics::Direction::reverse, double>;
-        trace_all(lens_, batch, {.carry = optics::Carry::geometry});
+        const optics::BatchSettings tracing{.carry = optics::Carry::geometry};
+        rays_.direction == optics::Direction::forward
+            ? tracer_.trace<optics::Direction::forward>(batch.columns(), tracing)
+            : tracer_.trace<optics::Direction::reverse>(batch.columns(), tracing);
         std::ranges::transform(batch.status.begin(), batch.status.begin() + batch.size,
                                answers.begin() + static_cast<std::ptrdiff_t>(first), [](optics::RayStatus status) {
                                    return status == optics::RayStatus::ok ? std::uint8_t{1} : std::uint8_t{0};

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "engine/optics/packet/trace_batch.h"
+#include "engine/optics/device/device_trace.h"
 #include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_outline.h"
 
@@ -34,9 +34,12 @@ struct StationPlace {
 /// lies at (0, r), and inside the disc.
 class PupilStations {
   public:
+    /// `device`: that traces, or null. All outlive this.
     PupilStations(const std::vector<optics::TraceLens<double>>& band, const RayFamily& rays, const Disc& disc,
-                  PupilSymmetry symmetry)
-        : band_(band), lens_(band), rays_(rays), disc_(disc), symmetry_(symmetry) {}
+                  PupilSymmetry symmetry, SharedDevice* device)
+        : band_(band), lens_(band), tracer_(lens_, device), rays_(rays), disc_(disc), symmetry_(symmetry) {}
+    PupilStations(const PupilStations&) = delete;  // the tracer refers to the lens
+    PupilStations& operator=(const PupilStations&) = delete;
 
     /// A place to be traced, and others whose regions are much like its own, should it have no neighbours along the
     /// radius yet.
@@ -57,12 +60,13 @@ class PupilStations {
   private:
     [[nodiscard]] Ray<double> ray(const StationPlace& place, Vec2d own_point) const;
     void ask(const std::vector<Request>& requests, std::span<const RegionPoint> points,
-             std::span<std::uint8_t> answers) const;
+             std::span<std::uint8_t> answers);
     [[nodiscard]] std::optional<Vec2d> point_by_margin(const StationPlace& place) const;
     [[nodiscard]] std::optional<PupilFrame> expected_frame(const Request& request) const;
 
     const std::vector<optics::TraceLens<double>>& band_;
     optics::SpectralLens<double> lens_;  // the same
+    optics::ColumnTracer<double> tracer_;
     const RayFamily& rays_;
     const Disc& disc_;
     PupilSymmetry symmetry_;

@@ -12,13 +12,14 @@
 namespace lensproof::render {
 
 PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
-                             PassIntegrators integrators, const std::optional<PixelFilter>& stray_filter)
+                             PassIntegrators integrators, const std::optional<PixelFilter>& stray_filter,
+                             std::shared_ptr<SharedDevice> device)
     : setup_(setup),
       filter_(filter),
       stray_filter_(stray_filter.value_or(filter)),
       cache_(cache),
       integrators_(setup.chart ? PassIntegrators{.usual = &integrator_named("chart")} : std::move(integrators)),
-      camera_(setup.camera, setup.spectral, filter, cache, integrators_.has_splats()),
+      camera_(setup.camera, setup.spectral, filter, cache, integrators_.has_splats(), std::move(device)),
       world_(make_world()) {
     if (!camera_.clamp_note().empty()) {
         remarks_.push_back(camera_.clamp_note());

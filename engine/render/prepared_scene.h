@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,10 +20,11 @@ class PreparedScene {
   public:
     /// Loads the lens and everything that the scene names. `integrators`: of a chart in even light there is but one.
     /// `cache`: for what is found by tracing the lens and for the uplift of RGB; the same pictures come from any.
-    /// `stray_filter`: of passes that do not go straight, in place of `filter`.
+    /// `stray_filter`: of passes that do not go straight, in place of `filter`. `device`: for the camera, or null.
     /// Throws InputError as `Camera` and `build_scene` do.
     PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
-                  PassIntegrators integrators = {}, const std::optional<PixelFilter>& stray_filter = {});
+                  PassIntegrators integrators = {}, const std::optional<PixelFilter>& stray_filter = {},
+                  std::shared_ptr<SharedDevice> device = nullptr);
     PreparedScene(const PreparedScene&) = delete;
     PreparedScene& operator=(const PreparedScene&) = delete;
 

@@ -1,176 +1,228 @@
 #include "engine/optics/device/device_trace.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
+#include <utility>
 
 #include "engine/optics/device/trace_job.h"
 
 namespace lensproof::optics {
 
-namespace {
-
-constexpr std::size_t kPiece = std::size_t{1} << 18U;  // rays: enough to fill a GPU, few enough to overlap
-
-/// A piece's columns here and on the device, and the queue that it goes through.
+/// Some rays, here and on the device.
 template <class T>
-class Piece {
+class ColumnTracer<T>::Piece {
   public:
     Piece(const Device& device, std::size_t most)
-        : queue_(device),
-          numbers_here_(device, kNumbers * most),
-          numbers_there_(device, kNumbers * most),
-          wavelengths_here_(device, most),
-          wavelengths_there_(device, most),
-          statuses_here_(device, most),
-          statuses_there_(device, most),
-          surfaces_here_(device, most),
-          surfaces_there_(device, most),
-          most_(most) {}
+        : buffer_(device, kNumbers * DeviceBuffer::bytes_for<T>(most) +
+                              DeviceBuffer::bytes_for<std::uint16_t, RayStatus, std::int16_t>(most)),
+          wavelength_(buffer_.column<std::uint16_t>(most)),
+          status_(buffer_.column<RayStatus>(most)),
+          surface_(buffer_.column<std::int16_t>(most)),
+          most_(most) {
+        for (DeviceColumn<T>& column : numbers_) {
+            column = buffer_.column<T>(most);
+        }
+    }
+
+    [[nodiscard]] std::size_t most() const { return most_; }
 
     /// Starts rays `first` … of `rays`, as many as fit.
     template <Direction direction>
     void start(const DeviceLens<T>& lens, const RayColumns<T>& rays, std::size_t first, const BatchSettings& settings) {
         first_ = first;
         count_ = std::min(most_, static_cast<std::size_t>(rays.size) - first);
-        const std::array<T*, 6> given = {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};
-        for (std::size_t i = 0; i < given.size(); ++i) {
-            std::copy_n(given[i] + first, count_, numbers_here_.data() + i * most_);
-        }
+        const auto send = [&]<class Number>(const Number* from, const DeviceColumn<Number>& to) {
+            std::copy_n(from + first_, count_, to.here);
+            buffer_.upload(to, count_);
+        };
         if (rays.wavelength != nullptr) {
-            std::copy_n(rays.wavelength + first, count_, wavelengths_here_.data());
-            queue_.upload(wavelengths_there_.data(), wavelengths_here_.data(), count_ * sizeof(std::uint16_t));
+            send(rays.wavelength, wavelength_);
         }
-        for (std::size_t i = 0; i < given.size(); ++i) {
-            queue_.upload(numbers_there_.data() + i * most_, numbers_here_.data() + i * most_, count_ * sizeof(T));
+        const std::array<T*, kNumbers> columns = columns_of(rays, Carry::geometry);
+        for (std::size_t i = 0; i < kGiven; ++i) {
+            send(columns[i], numbers_[i]);
         }
         with_trace_job<direction>(lens.view(), there(), settings.rims, settings.carry,
-                                  [&](const auto& job) { queue_.run(job, static_cast<int>(count_)); });
-        queue_.download(numbers_here_.data(), numbers_there_.data(), numbers_here_.bytes());
-        queue_.download(statuses_here_.data(), statuses_there_.data(), count_ * sizeof(RayStatus));
-        queue_.download(surfaces_here_.data(), surfaces_there_.data(), count_ * sizeof(std::int16_t));
+                                  [&](const auto& job) { buffer_.queue().run(job, static_cast<int>(count_)); });
+        for (const DeviceColumn<T>& column : numbers_) {
+            buffer_.download(column, count_);
+        }
+        buffer_.download(status_, count_);
+        buffer_.download(surface_, count_);
     }
 
-    /// Waits for what was started, if anything, and puts it into `rays`.
-    void finish(const RayColumns<T>& rays, Carry carry) {
+    /// Waits for what was started, if anything, and puts it into `rays`. Returns how many of them.
+    std::size_t finish(const RayColumns<T>& rays, Carry carry) {
         if (count_ == 0) {
-            return;
+            return 0;
         }
-        queue_.wait();
-        const std::array<T*, kNumbers> found = {rays.x,
-                                                rays.y,
-                                                rays.z,
-                                                rays.dx,
-                                                rays.dy,
-                                                rays.dz,
-                                                carry != Carry::geometry ? rays.transmittance : nullptr,
-                                                carry == Carry::all ? rays.optical_path : nullptr};
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            if (found[i] != nullptr) {
-                std::copy_n(numbers_here_.data() + i * most_, count_, found[i] + first_);
+        buffer_.queue().wait();
+        const std::array<T*, kNumbers> columns = columns_of(rays, carry);
+        for (std::size_t i = 0; i < kNumbers; ++i) {
+            if (columns[i] != nullptr) {
+                std::copy_n(numbers_[i].here, count_, columns[i] + first_);
             }
         }
-        std::copy_n(statuses_here_.data(), count_, rays.status + first_);
-        std::copy_n(surfaces_here_.data(), count_, rays.surface + first_);
-        count_ = 0;
+        std::copy_n(status_.here, count_, rays.status + first_);
+        std::copy_n(surface_.here, count_, rays.surface + first_);
+        return std::exchange(count_, 0);
     }
 
   private:
+    static constexpr std::size_t kGiven = 6;
     static constexpr std::size_t kNumbers = 8;
 
+    /// Null: not carried.
+    static std::array<T*, kNumbers> columns_of(const RayColumns<T>& rays, Carry carry) {
+        return {rays.x,
+                rays.y,
+                rays.z,
+                rays.dx,
+                rays.dy,
+                rays.dz,
+                carry != Carry::geometry ? rays.transmittance : nullptr,
+                carry == Carry::all ? rays.optical_path : nullptr};
+    }
+
     [[nodiscard]] RayColumns<T> there() const {
-        const auto column = [&](std::size_t i) { return numbers_there_.data() + i * most_; };
-        return {.x = column(0),
-                .y = column(1),
-                .z = column(2),
-                .dx = column(3),
-                .dy = column(4),
-                .dz = column(5),
-                .optical_path = column(7),
-                .transmittance = column(6),
-                .wavelength = wavelengths_there_.data(),
-                .status = statuses_there_.data(),
-                .surface = surfaces_there_.data(),
+        return {.x = numbers_[0].there,
+                .y = numbers_[1].there,
+                .z = numbers_[2].there,
+                .dx = numbers_[3].there,
+                .dy = numbers_[4].there,
+                .dz = numbers_[5].there,
+                .optical_path = numbers_[7].there,
+                .transmittance = numbers_[6].there,
+                .wavelength = wavelength_.there,
+                .status = status_.there,
+                .surface = surface_.there,
                 .size = static_cast<int>(count_)};
     }
 
-    Device::Queue queue_;
-    PinnedArray<T> numbers_here_;
-    DeviceArray<T> numbers_there_;
-    PinnedArray<std::uint16_t> wavelengths_here_;
-    DeviceArray<std::uint16_t> wavelengths_there_;
-    PinnedArray<RayStatus> statuses_here_;
-    DeviceArray<RayStatus> statuses_there_;
-    PinnedArray<std::int16_t> surfaces_here_;
-    DeviceArray<std::int16_t> surfaces_there_;
+    DeviceBuffer buffer_;
+    std::array<DeviceColumn<T>, kNumbers> numbers_;
+    DeviceColumn<std::uint16_t> wavelength_;
+    DeviceColumn<RayStatus> status_;
+    DeviceColumn<std::int16_t> surface_;
     std::size_t most_;
     std::size_t first_ = 0;
     std::size_t count_ = 0;
 };
 
-}  // namespace
-
-template <Direction direction, class T>
-void trace_columns_on(const Device& device, const DeviceLens<T>& lens, const RayColumns<T>& rays,
-                      const BatchSettings& settings) {
-    const auto size = static_cast<std::size_t>(rays.size);
-    const std::size_t most = std::min(size, kPiece);
-    std::array<Piece<T>, 2> pieces = {Piece<T>(device, most), Piece<T>(device, most)};
-    std::size_t next = 0;
-    for (std::size_t first = 0; first < size; first += most) {
-        pieces[next].finish(rays, settings.carry);
-        pieces[next].template start<direction>(lens, rays, first, settings);
-        next = 1 - next;
+template <class T>
+ColumnTracer<T>::ColumnTracer(const SpectralLens<T>& lens, SharedDevice* device, std::size_t piece)
+    : lens_(&lens), device_(device), most_(piece) {
+    if (device_ == nullptr || device_->has_failed()) {
+        return;
     }
-    pieces[next].finish(rays, settings.carry);
-    pieces[1 - next].finish(rays, settings.carry);
+    try {
+        there_.emplace(device_->device(), lens);
+    } catch (const DeviceError& error) {
+        fall_back(error.what());
+    }
 }
 
-template void trace_columns_on<Direction::forward>(const Device&, const DeviceLens<float>&, const RayColumns<float>&,
-                                                   const BatchSettings&);
-template void trace_columns_on<Direction::reverse>(const Device&, const DeviceLens<float>&, const RayColumns<float>&,
-                                                   const BatchSettings&);
-template void trace_columns_on<Direction::forward>(const Device&, const DeviceLens<double>&, const RayColumns<double>&,
-                                                   const BatchSettings&);
-template void trace_columns_on<Direction::reverse>(const Device&, const DeviceLens<double>&, const RayColumns<double>&,
-                                                   const BatchSettings&);
+template <class T>
+ColumnTracer<T>::ColumnTracer(ColumnTracer&&) noexcept = default;
+template <class T>
+ColumnTracer<T>& ColumnTracer<T>::operator=(ColumnTracer&&) noexcept = default;
+template <class T>
+ColumnTracer<T>::~ColumnTracer() = default;
+
+template <class T>
+void ColumnTracer<T>::fall_back(const std::string& why) {
+    there_.reset();
+    pieces_ = {};
+    device_->fail(why);
+}
+
+template <class T>
+template <Direction direction>
+void ColumnTracer<T>::trace(const RayColumns<T>& rays, const BatchSettings& settings) {
+    const std::size_t done = there_ ? trace_on_device<direction>(rays, settings) : 0;
+    if (done == static_cast<std::size_t>(rays.size)) {
+        return;
+    }
+    RayColumns<T> rest = rays;
+    rest.size -= static_cast<int>(done);
+    for (T** column :
+         {&rest.x, &rest.y, &rest.z, &rest.dx, &rest.dy, &rest.dz, &rest.optical_path, &rest.transmittance}) {
+        *column += *column != nullptr ? done : 0;
+    }
+    rest.wavelength += rest.wavelength != nullptr ? done : 0;
+    rest.status += done;
+    rest.surface += done;
+    trace_columns<direction>(*lens_, rest, settings);
+}
+
+template <class T>
+template <Direction direction>
+std::size_t ColumnTracer<T>::trace_on_device(const RayColumns<T>& rays, const BatchSettings& settings) {
+    const auto size = static_cast<std::size_t>(rays.size);
+    std::size_t done = 0;
+    try {
+        const std::size_t most = std::min(std::bit_ceil(size), most_);
+        for (std::unique_ptr<Piece>& piece : pieces_) {
+            if (!piece || piece->most() < most) {
+                piece = std::make_unique<Piece>(device_->device(), most);
+            }
+        }
+        std::size_t next = 0;
+        for (std::size_t first = 0; first < size; first += pieces_[next]->most()) {
+            done += pieces_[next]->finish(rays, settings.carry);
+            pieces_[next]->template start<direction>(*there_, rays, first, settings);
+            next = 1 - next;
+        }
+        done += pieces_[next]->finish(rays, settings.carry);
+        done += pieces_[1 - next]->finish(rays, settings.carry);
+    } catch (const DeviceError& error) {
+        fall_back(error.what());
+    }
+    return done;
+}
+
+template class ColumnTracer<float>;
+template class ColumnTracer<double>;
+template void ColumnTracer<float>::trace<Direction::forward>(const RayColumns<float>&, const BatchSettings&);
+template void ColumnTracer<float>::trace<Direction::reverse>(const RayColumns<float>&, const BatchSettings&);
+template void ColumnTracer<double>::trace<Direction::forward>(const RayColumns<double>&, const BatchSettings&);
+template void ColumnTracer<double>::trace<Direction::reverse>(const RayColumns<double>&, const BatchSettings&);
 
 template <class T>
 DeviceEvents<T>::DeviceEvents(const Device& device, const DeviceLens<T>& lens, std::span<const Ray<T>> rays,
-                              std::span<const std::uint16_t> wavelengths, const EventWay& way)
+                              std::span<const std::uint16_t> wavelengths, const RayWay<T>& way)
     // A ghost of n reflections crosses the lens n + 1 times, and meets the sensor at most n times.
     : most_events_((way.reflections.size() + 1) * static_cast<std::size_t>(lens.view().surface_count) +
                    way.reflections.size()),
-      events_(device, rays.size() * most_events_),
-      counts_(device, rays.size()),
-      ends_(device, rays.size()) {
-    Device::Queue queue(device);
+      buffer_(device, DeviceBuffer::bytes_for<SurfaceEvent<T>>(rays.size() * most_events_) +
+                          DeviceBuffer::bytes_for<Ray<T>, std::uint16_t, std::int32_t, TracedRay<T>>(rays.size()) +
+                          DeviceBuffer::bytes_for<int>(way.reflections.size())),
+      events_(buffer_.column<SurfaceEvent<T>>(rays.size() * most_events_)),
+      counts_(buffer_.column<std::int32_t>(rays.size())),
+      ends_(buffer_.column<TracedRay<T>>(rays.size())) {
     const auto sent = [&]<class Item>(std::span<const Item> items) {
-        DeviceArray<Item> there(device, items.size());
-        queue.upload(there.data(), items.data(), items.size_bytes());
-        return there;
+        const DeviceColumn<Item> column = buffer_.column<Item>(items.size());
+        std::ranges::copy(items, column.here);
+        buffer_.upload(column, items.size());
+        return column.there;
     };
-    const DeviceArray<Ray<T>> rays_there = sent(rays);
-    const DeviceArray<std::uint16_t> wavelengths_there = sent(wavelengths);
-    const DeviceArray<int> reflections_there = sent(std::span<const int>(way.reflections));
-    const DeviceArray<SurfaceEvent<T>> events_there(device, events_.size());
-    const DeviceArray<std::int32_t> counts_there(device, counts_.size());
-    const DeviceArray<TracedRay<T>> ends_there(device, ends_.size());
-    queue.run(EventJob<T>{.lens = lens.view(),
-                          .rays = rays_there.data(),
-                          .wavelength = wavelengths_there.data(),
-                          .events = events_there.data(),
-                          .event_counts = counts_there.data(),
-                          .ends = ends_there.data(),
-                          .most_events = static_cast<int>(most_events_),
-                          .direction = way.direction,
-                          .rims = way.rims,
-                          .reflections = {reflections_there.data(), way.reflections.size()},
-                          .mirrors = {static_cast<T>(way.mirrors.sensor), static_cast<T>(way.mirrors.blades)}},
-              static_cast<int>(rays.size()));
-    queue.download(events_.data(), events_there.data(), events_.bytes());
-    queue.download(counts_.data(), counts_there.data(), counts_.bytes());
-    queue.download(ends_.data(), ends_there.data(), ends_.bytes());
-    queue.wait();
+    buffer_.queue().run(
+        EventJob<T>{.lens = lens.view(),
+                    .way = {.direction = way.direction,
+                            .rims = way.rims,
+                            .reflections = {sent(std::span<const int>(way.reflections)), way.reflections.size()},
+                            .mirrors = way.mirrors},
+                    .rays = sent(rays),
+                    .wavelength = sent(wavelengths),
+                    .events = events_.there,
+                    .event_counts = counts_.there,
+                    .ends = ends_.there,
+                    .most_events = static_cast<int>(most_events_)},
+        static_cast<int>(rays.size()));
+    buffer_.download(events_, rays.size() * most_events_);
+    buffer_.download(counts_, rays.size());
+    buffer_.download(ends_, rays.size());
+    buffer_.queue().wait();
 }
 
 template class DeviceEvents<float>;

@@ -1,51 +1,79 @@
 // engine/optics/device/device_trace.h — the tracer on a device, for rays in this machine's memory.
 #pragma once
+#include <array>
+#include <memory>
+#include <optional>
 #include <span>
-#include <vector>
 
+#include "engine/device/device_buffer.h"
+#include "engine/device/shared_device.h"
 #include "engine/optics/device/device_lens.h"
-#include "engine/optics/ghost_path.h"
 #include "engine/optics/packet/ray_batch.h"
 #include "engine/optics/packet/trace_batch.h"
+#include "engine/optics/ray_way.h"
 
 namespace lensproof::optics {
 
-/// `trace_columns` on the device that the lens lies on, to the same bits but for what coatings let pass, which takes
-/// sines and exponentials of the machine's own; `settings.level` is not looked at. In pieces, the next of which is on
-/// its way while one is traced. Throws DeviceError.
-template <Direction direction = Direction::forward, class T>
-void trace_columns_on(const Device& device, const DeviceLens<T>& lens, const RayColumns<T>& rays,
-                      const BatchSettings& settings = {});
+/// `trace_columns` by a device, or where there is none, or none that still works, in packets on the processors. Both to
+/// the same bits, but for what coatings let pass, which takes sines and exponentials of the machine's own. For one
+/// thread.
+template <class T>
+class ColumnTracer {
+  public:
+    /// To a GPU go so many rays at a time: enough to fill it, few enough for the next ones to be on their way.
+    static constexpr std::size_t kUsualPiece = std::size_t{1} << 18U;
 
-/// Which way rays take: `trace`, or `trace_ghost` where there are reflections.
-struct EventWay {
-    Direction direction = Direction::forward;
-    Rims rims = Rims::clip;
-    GhostPath reflections;
-    StrayMirrors<double> mirrors;
+    /// `device`: null will do. Both outlive this. `piece`: a power of two, of 16 or more.
+    ColumnTracer(const SpectralLens<T>& lens, SharedDevice* device, std::size_t piece = kUsualPiece);
+    ColumnTracer(ColumnTracer&&) noexcept;
+    ColumnTracer& operator=(ColumnTracer&&) noexcept;
+    ~ColumnTracer();
+
+    /// Whether a device does it: then many rays at a time are better than few.
+    [[nodiscard]] bool is_on_device() const { return there_.has_value(); }
+
+    template <Direction direction = Direction::forward>
+    void trace(const RayColumns<T>& rays, const BatchSettings& settings = {});
+
+  private:
+    class Piece;
+
+    /// As many of the rays as it could before the device failed, from the first on: all.
+    template <Direction direction>
+    std::size_t trace_on_device(const RayColumns<T>& rays, const BatchSettings& settings);
+    void fall_back(const std::string& why);
+
+    const SpectralLens<T>* lens_;
+    SharedDevice* device_;
+    std::size_t most_;
+    std::optional<DeviceLens<T>> there_;            // none: in packets
+    std::array<std::unique_ptr<Piece>, 2> pieces_;  // the next one is on its way while one is traced
 };
 
-/// What `trace` reports of many rays, surface by surface.
+/// What `trace_along` reports of many rays, surface by surface.
 template <class T>
 class DeviceEvents {
   public:
     /// Of these rays, each at its wavelength of the lens. Throws DeviceError.
     DeviceEvents(const Device& device, const DeviceLens<T>& lens, std::span<const Ray<T>> rays,
-                 std::span<const std::uint16_t> wavelengths, const EventWay& way);
+                 std::span<const std::uint16_t> wavelengths, const RayWay<T>& way);
 
     /// In their order; and where the ray ended.
     [[nodiscard]] std::span<const SurfaceEvent<T>> events(std::size_t ray) const {
-        return {events_.data() + ray * most_events_, static_cast<std::size_t>(counts_.data()[ray])};
+        return {events_.here + ray * most_events_, static_cast<std::size_t>(counts_.here[ray])};
     }
-    [[nodiscard]] const TracedRay<T>& end(std::size_t ray) const { return ends_.data()[ray]; }
+    [[nodiscard]] const TracedRay<T>& end(std::size_t ray) const { return ends_.here[ray]; }
 
   private:
     std::size_t most_events_;
-    PinnedArray<SurfaceEvent<T>> events_;
-    PinnedArray<std::int32_t> counts_;
-    PinnedArray<TracedRay<T>> ends_;
+    DeviceBuffer buffer_;
+    DeviceColumn<SurfaceEvent<T>> events_;
+    DeviceColumn<std::int32_t> counts_;
+    DeviceColumn<TracedRay<T>> ends_;
 };
 
+extern template class ColumnTracer<float>;
+extern template class ColumnTracer<double>;
 extern template class DeviceEvents<float>;
 extern template class DeviceEvents<double>;
 

@@ -1,9 +1,9 @@
 // engine/optics/device/trace_job.h — given rays through a lens, an item a ray.
 #pragma once
 #include "engine/optics/device/lens_view.h"
-#include "engine/optics/ghost_path.h"
 #include "engine/optics/packet/ray_batch.h"
 #include "engine/optics/packet/trace_batch.h"
+#include "engine/optics/ray_way.h"
 
 namespace lensproof::optics {
 
@@ -57,48 +57,27 @@ void with_trace_job(const LensView<T>& lens, const RayColumns<T>& rays, Rims rim
     rims == Rims::clip ? with_rims.template operator()<Rims::clip>() : with_rims.template operator()<Rims::follow>();
 }
 
-/// What `trace` and `trace_ghost` report, event by event: of ray i those from i · `most_events` on.
+/// What `trace_along` reports, event by event: of ray i those from i · `most_events` on.
 template <class T>
 struct EventJob {
     static constexpr int kThreadsPerBlock = 128;
 
     LensView<T> lens;
+    RayWay<T, std::span<const int>> way;
     const Ray<T>* rays = nullptr;
     const std::uint16_t* wavelength = nullptr;
     SurfaceEvent<T>* events = nullptr;
     std::int32_t* event_counts = nullptr;
     TracedRay<T>* ends = nullptr;
     int most_events = 0;
-    Direction direction = Direction::forward;
-    Rims rims = Rims::clip;
-    std::span<const int> reflections;  // empty: through the lens
-    StrayMirrors<T> mirrors;
 
     constexpr void operator()(int item) const {
         const auto i = static_cast<std::size_t>(item);
         SurfaceEvent<T>* to = events + i * static_cast<std::size_t>(most_events);
         int count = 0;
-        ends[i] = traced(rays[i], lens.at(wavelength[i]), [&](const SurfaceEvent<T>& event) { to[count++] = event; });
+        ends[i] = trace_along(lens.at(wavelength[i]), way, rays[i],
+                              [&](const SurfaceEvent<T>& event) { to[count++] = event; });
         event_counts[i] = count;
-    }
-
-  private:
-    template <class Visitor>
-    constexpr TracedRay<T> traced(const Ray<T>& ray, const typename LensView<T>::AtWavelength& at,
-                                  const Visitor& visit) const {
-        if (rims == Rims::clip) {
-            return traced_with<Rims::clip>(ray, at, visit);
-        }
-        return traced_with<Rims::follow>(ray, at, visit);
-    }
-    template <Rims with, class Visitor>
-    constexpr TracedRay<T> traced_with(const Ray<T>& ray, const typename LensView<T>::AtWavelength& at,
-                                       const Visitor& visit) const {
-        if (!reflections.empty()) {
-            return trace_ghost<Direction::forward, with>(at, reflections, ray, mirrors, visit);
-        }
-        return direction == Direction::forward ? trace_through<Direction::forward, with, true>(at, ray, visit)
-                                               : trace_through<Direction::reverse, with, true>(at, ray, visit);
     }
 };
 

@@ -44,12 +44,13 @@ std::int64_t CameraPaths::started() const {
 }
 
 Camera::Camera(const CameraSettings& settings, const SpectralSampling& sampling, const PixelFilter& filter,
-               const Cache& cache, bool meets_light_paths)
+               const Cache& cache, bool meets_light_paths, std::shared_ptr<SharedDevice> device)
     : Camera(settings, settings.focal_length_mm ? std::nullopt : std::optional(camera_lens(settings)), sampling, filter,
-             cache, meets_light_paths) {}
+             cache, meets_light_paths, std::move(device)) {}
 
 Camera::Camera(const CameraSettings& settings, std::optional<optics::Lens> lens, const SpectralSampling& sampling,
-               const PixelFilter& filter, const Cache& cache, bool meets_light_paths)
+               const PixelFilter& filter, const Cache& cache, bool meets_light_paths,
+               std::shared_ptr<SharedDevice> device)
     : settings_(settings),
       cache_(cache),
       pose_(camera_to_world(settings)),
@@ -57,7 +58,7 @@ Camera::Camera(const CameraSettings& settings, std::optional<optics::Lens> lens,
       grid_(make_grid(sampling)),
       film_(make_film(sampling.layers, filter)),
       colours_(spectral::rgb_space(settings.response, spectral::illuminant(settings.white_balance))),
-      optics_(make_optics(meets_light_paths)) {}
+      optics_(make_optics(meets_light_paths, std::move(device))) {}
 
 spectral::SpectralGrid Camera::make_grid(const SpectralSampling& sampling) {
     SpectralSampling band = sampling;
@@ -78,7 +79,12 @@ spectral::SpectralGrid Camera::make_grid(const SpectralSampling& sampling) {
     return {spectral::wavelength_strata(band.min_nm, band.max_nm, sampling.strata())};
 }
 
-Camera::Optics Camera::make_optics(bool meets_light_paths) const {
+Camera::Optics Camera::make_optics(bool meets_light_paths, std::shared_ptr<SharedDevice> device) const {
+    if (device && !traces_surfaces(settings_.model)) {
+        device->refuse(fmt::format("it traces lenses, and the camera's model is {}", name_of(settings_.model)));
+    } else if (device && !film_.filter.is_box()) {
+        device->refuse(fmt::format("it draws film points from the box, and the filter is {}", film_.filter.name()));
+    }
     const std::vector<double> wavelengths = grid_.strata.midpoints();
     // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
     const double film_radius_mm = sensor().half_diagonal_mm(film_.filter.radius_px() - 0.5);
@@ -89,7 +95,8 @@ Camera::Optics Camera::make_optics(bool meets_light_paths) const {
     if (traces_surfaces(settings_.model)) {
         return Optics(std::in_place_type<ExactCamera>, lens_.value(), wavelengths, film_radius_mm, cache_,
                       meets_light_paths,
-                      settings_.model == LensModel::exact ? TracePrecision::in_double : TracePrecision::in_float);
+                      settings_.model == LensModel::exact ? TracePrecision::in_double : TracePrecision::in_float,
+                      std::move(device));
     }
     if (settings_.model == LensModel::thin_lens_profile || settings_.model == LensModel::pinhole_profile) {
         return Optics(std::in_place_type<ProfileCamera>,
@@ -104,18 +111,6 @@ Camera::Optics Camera::make_optics(bool meets_light_paths) const {
                                        settings_.focus_distance_mm, settings_.model);
     });
     return Optics(std::in_place_type<IdealCamera>, std::move(at));
-}
-
-void Camera::fill_on(std::shared_ptr<PathDevice> device) {
-    auto* exact = std::get_if<ExactCamera>(&optics_);
-    if (exact == nullptr) {
-        throw InputError(fmt::format("a device traces lenses, and the camera's model is {}", name_of(settings_.model)));
-    }
-    if (!film_.filter.is_box()) {
-        throw InputError(
-            fmt::format("a device draws film points from the box, and the pixel filter is {}", film_.filter.name()));
-    }
-    exact->fill_on(std::move(device));
 }
 
 CameraPaths Camera::paths(std::uint64_t seed, PathCarry carry) const {

@@ -70,19 +70,17 @@ class Camera {
     /// Loads the lens. `sampling`: clamped to where its glasses are known. `cache`: for what is found by tracing it;
     /// the same pictures come from any. `meets_light_paths`: else `sample` and `pdf` must not be asked. Throws
     /// InputError as `camera_lens`, `gaussian_optics`, `traced_profile` and `polynomial::fit_polynomial` do, and for a
-    /// picture of more values than fit.
+    /// picture of more values than fit. `device`: fills buffers of paths and finds pupils, to the same bits, where it
+    /// can (SharedDevice::refuse says where not); none: the processors.
     Camera(const CameraSettings& settings, const SpectralSampling& sampling, const PixelFilter& filter,
-           const Cache& cache, bool meets_light_paths = false);
+           const Cache& cache, bool meets_light_paths = false, std::shared_ptr<SharedDevice> device = nullptr);
     /// The same with a lens, stopped down and focused, in the place of the one that the settings name; none where they
     /// have a focal length instead.
     Camera(const CameraSettings& settings, std::optional<optics::Lens> lens, const SpectralSampling& sampling,
-           const PixelFilter& filter, const Cache& cache, bool meets_light_paths = false);
+           const PixelFilter& filter, const Cache& cache, bool meets_light_paths = false,
+           std::shared_ptr<SharedDevice> device = nullptr);
     Camera(const Camera&) = delete;
     Camera& operator=(const Camera&) = delete;
-
-    /// From now on a device fills buffers of paths, to the same bits. Throws InputError where it cannot (paths of
-    /// another model than the exact ones, another filter than the box, ExactCamera::fill_on), and DeviceError.
-    void fill_on(std::shared_ptr<PathDevice> device);
 
     [[nodiscard]] CameraPaths paths(std::uint64_t seed, PathCarry carry) const;
     [[nodiscard]] FilmImportance importance(const Ray<double>& ray, const spectral::PathWavelengths& path) const;
@@ -130,7 +128,7 @@ class Camera {
     using Optics = std::variant<ExactCamera, PolynomialCamera, IdealCamera, ProfileCamera>;
     [[nodiscard]] spectral::SpectralGrid make_grid(const SpectralSampling& sampling);
     [[nodiscard]] FilmLayout make_film(int layers, const PixelFilter& filter) const;
-    [[nodiscard]] Optics make_optics(bool meets_light_paths) const;
+    [[nodiscard]] Optics make_optics(bool meets_light_paths, std::shared_ptr<SharedDevice> device) const;
 
     CameraSettings settings_;
     Cache cache_;

@@ -5,10 +5,6 @@
 
 namespace lensproof::render {
 
-void PathDevice::tell_failure(const std::string& why) {
-    std::call_once(is_told_, [&] { on_failure_(why); });
-}
-
 template <class T>
 DeviceCamera<T>::DeviceCamera(const Device& device, const optics::SpectralLens<T>& lens,
                               const pupil::PupilSlices& pupil)
@@ -41,47 +37,45 @@ DeviceCamera<T>::DeviceCamera(const Device& device, const optics::SpectralLens<T
 
 namespace {
 
-/// Bytes of a path in a piece's columns.
-constexpr std::size_t kPathBytes = sizeof(PathFate) + sizeof(std::uint16_t) + 9 * sizeof(double);
+/// Calls use(column) with each column's place in any set of them.
+template <class Use>
+void for_each_column(const Use& use) {
+    use(&DevicePathColumns::fate);
+    use(&DevicePathColumns::wavelength);
+    use(&DevicePathColumns::film_x);
+    use(&DevicePathColumns::film_y);
+    use(&DevicePathColumns::weight);
+    use(&DevicePathColumns::x);
+    use(&DevicePathColumns::y);
+    use(&DevicePathColumns::z);
+    use(&DevicePathColumns::dx);
+    use(&DevicePathColumns::dy);
+    use(&DevicePathColumns::dz);
+}
+
+std::size_t column_bytes(std::size_t paths) {
+    std::size_t bytes = 0;
+    for_each_column([&]<class Number>(Number* DevicePathColumns::* /*column*/) {
+        bytes += DeviceBuffer::bytes_for<Number>(paths);
+    });
+    return bytes;
+}
 
 }  // namespace
 
 template <class T>
-DevicePaths<T>::Piece::Piece(const Device& device)
-    : queue(device), there(device, kPiece * kPathBytes), here(device, kPiece * kPathBytes) {}
-
-/// Of a piece's memory, on the device or here.
-template <class T>
-DevicePathColumns DevicePaths<T>::columns(std::byte* memory) {
-    const auto column = [&]<class Number>(Number*& place) {
-        place = static_cast<Number*>(static_cast<void*>(memory));
-        memory += kPiece * sizeof(Number);
-    };
-    DevicePathColumns paths;
-    column(paths.film_x);
-    column(paths.film_y);
-    column(paths.weight);
-    column(paths.x);
-    column(paths.y);
-    column(paths.z);
-    column(paths.dx);
-    column(paths.dy);
-    column(paths.dz);
-    column(paths.wavelength);
-    column(paths.fate);
-    return paths;
+DevicePaths<T>::Piece::Piece(const Device& device) : buffer(device, column_bytes(kPiece)) {
+    for_each_column([&]<class Number>(Number* DevicePathColumns::*column) {
+        const DeviceColumn<Number> made = buffer.column<Number>(kPiece);
+        here.*column = made.here;
+        there.*column = made.there;
+    });
 }
 
 template <class T>
-DevicePaths<T>::DevicePaths(PathDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film, double pupil_z,
-                            BasicLensPaths<T> fallback)
-    : device_(&device), camera_(&camera), film_(film), pupil_z_(pupil_z), fallback_(std::move(fallback)) {
-    try {
-        pieces_.emplace(std::array<Piece, 2>{Piece(device.device()), Piece(device.device())});
-    } catch (const DeviceError& error) {
-        fall_back(error.what());
-    }
-}
+DevicePaths<T>::DevicePaths(SharedDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film,
+                            double pupil_z, BasicLensPaths<T> fallback)
+    : device_(&device), camera_(&camera), film_(film), pupil_z_(pupil_z), fallback_(std::move(fallback)) {}
 
 template <class T>
 void DevicePaths<T>::start(const CameraPathRange& range) {
@@ -89,16 +83,20 @@ void DevicePaths<T>::start(const CameraPathRange& range) {
     started_pieces_ = 0;
     given_ = 0;
     current_ = 0;
-    if (pieces_) {
+    if (!device_->has_failed()) {
         try {
+            if (!pieces_) {
+                pieces_.emplace(std::array<Piece, 2>{Piece(device_->device()), Piece(device_->device())});
+            }
             for (Piece& piece : *pieces_) {
                 start_piece(piece);
             }
             return;
         } catch (const DeviceError& error) {
-            fall_back(error.what());
+            device_->fail(error.what());
         }
     }
+    pieces_.reset();
     fallback_.start(range);
 }
 
@@ -113,41 +111,27 @@ void DevicePaths<T>::start_piece(Piece& piece) {
         return;
     }
     const auto run = [&]<bool has_specials>() {
-        piece.queue.run(PathJob<T, has_specials>{.lens = camera_->lens(),
-                                                 .pupil = camera_->pupil(),
-                                                 .pupil_z = pupil_z_,
-                                                 .film_z = static_cast<double>(camera_->lens().image_z),
-                                                 .directions = camera_->directions(),
-                                                 .sensor = film_.sensor,
-                                                 .seed = film_.seed,
-                                                 .range = range_,
-                                                 .first = piece.first,
-                                                 .paths = columns(piece.there.data())},
-                        static_cast<int>(piece.size));
+        piece.buffer.queue().run(PathJob<T, has_specials>{.lens = camera_->lens(),
+                                                          .pupil = camera_->pupil(),
+                                                          .pupil_z = pupil_z_,
+                                                          .film_z = static_cast<double>(camera_->lens().image_z),
+                                                          .directions = camera_->directions(),
+                                                          .sensor = film_.sensor,
+                                                          .seed = film_.seed,
+                                                          .range = range_,
+                                                          .first = piece.first,
+                                                          .paths = piece.there},
+                                 static_cast<int>(piece.size));
     };
     camera_->lens().has_more_than_spheres() ? run.template operator()<true>() : run.template operator()<false>();
-    // Whole columns, of which a short piece has but the first part.
-    const DevicePathColumns from = columns(piece.there.data());
-    const DevicePathColumns to = columns(piece.here.data());
-    const auto bring = [&]<class Number>(Number* there, Number* here) {
-        piece.queue.download(here, there, piece.size * sizeof(Number));
-    };
-    bring(from.film_x, to.film_x);
-    bring(from.film_y, to.film_y);
-    bring(from.weight, to.weight);
-    bring(from.x, to.x);
-    bring(from.y, to.y);
-    bring(from.z, to.z);
-    bring(from.dx, to.dx);
-    bring(from.dy, to.dy);
-    bring(from.dz, to.dz);
-    bring(from.wavelength, to.wavelength);
-    bring(from.fate, to.fate);
+    for_each_column([&]<class Number>(Number* DevicePathColumns::*column) {
+        piece.buffer.download(DeviceColumn<Number>{piece.here.*column, piece.there.*column}, piece.size);
+    });
 }
 
 template <class T>
 void DevicePaths<T>::give(Piece& piece, CameraPathBuffer& buffer) {
-    const DevicePathColumns from = columns(piece.here.data());
+    const DevicePathColumns& from = piece.here;
     std::size_t next = piece.next;
     for (; next < piece.size && buffer.size < buffer.capacity; ++next) {
         if (from.fate[next] != PathFate::leaves) {
@@ -179,7 +163,7 @@ void DevicePaths<T>::fill_from_device(CameraPathBuffer& buffer) {
     while (given_ < range_.size() && buffer.size < buffer.capacity) {
         Piece& piece = (*pieces_)[current_];
         if (!piece.is_here) {
-            piece.queue.wait();
+            piece.buffer.queue().wait();
             piece.is_here = true;
         }
         give(piece, buffer);
@@ -191,12 +175,6 @@ void DevicePaths<T>::fill_from_device(CameraPathBuffer& buffer) {
 }
 
 template <class T>
-void DevicePaths<T>::fall_back(const std::string& why) {
-    pieces_.reset();
-    device_->tell_failure(why);
-}
-
-template <class T>
 bool DevicePaths<T>::fill(CameraPathBuffer& buffer) {
     if (pieces_) {
         buffer.size = 0;
@@ -204,8 +182,9 @@ bool DevicePaths<T>::fill(CameraPathBuffer& buffer) {
             fill_from_device(buffer);
             return buffer.size > 0;
         } catch (const DeviceError& error) {
-            fall_back(error.what());
+            device_->fail(error.what());
         }
+        pieces_.reset();
         fallback_.start(range_, given_);
         if (buffer.size > 0) {  // what the device gave before it failed
             return true;

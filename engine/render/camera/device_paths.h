@@ -2,33 +2,17 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 
+#include "engine/device/device_buffer.h"
 #include "engine/device/parcel.h"
+#include "engine/device/shared_device.h"
 #include "engine/optics/device/device_lens.h"
 #include "engine/render/camera/lens_paths.h"
 #include "engine/render/camera/packet/path_job.h"
 
 namespace lensproof::render {
-
-/// A device that fills buffers of camera paths, and who is told when it fails. Shared by all threads.
-class PathDevice {
-  public:
-    /// `on_failure(why)` is called once, by any thread.
-    PathDevice(Device device, std::function<void(const std::string& why)> on_failure)
-        : device_(std::move(device)), on_failure_(std::move(on_failure)) {}
-
-    [[nodiscard]] const Device& device() const { return device_; }
-    void tell_failure(const std::string& why);
-
-  private:
-    Device device_;
-    std::function<void(const std::string&)> on_failure_;
-    std::once_flag is_told_;
-};
 
 /// A lens with its pupil in a device's memory, for the paths of all threads.
 template <class T>
@@ -55,8 +39,15 @@ template <class T>
 class DevicePaths {
   public:
     /// All outlive this. `fallback`: the same paths on this machine.
-    DevicePaths(PathDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film, double pupil_z,
+    DevicePaths(SharedDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film, double pupil_z,
                 BasicLensPaths<T> fallback);
+    DevicePaths(DevicePaths&&) noexcept = default;
+    DevicePaths& operator=(DevicePaths&&) noexcept = default;
+    /// With pieces of its own, for another thread: to be started.
+    DevicePaths(const DevicePaths& other)
+        : DevicePaths(*other.device_, *other.camera_, other.film_, other.pupil_z_, other.fallback_) {}
+    DevicePaths& operator=(const DevicePaths&) = delete;
+    ~DevicePaths() = default;
 
     void start(const CameraPathRange& range);
     bool fill(CameraPathBuffer& buffer);
@@ -65,33 +56,31 @@ class DevicePaths {
   private:
     static constexpr std::size_t kPiece = std::size_t{1} << 15U;  // paths
 
-    /// Some paths, here and on the device, and the queue that they go through.
+    /// Some paths, here and on the device.
     struct Piece {
         explicit Piece(const Device& device);
 
-        Device::Queue queue;
-        DeviceArray<std::byte> there;
-        PinnedArray<std::byte> here;
+        DeviceBuffer buffer;
+        DevicePathColumns here;
+        DevicePathColumns there;
         std::uint64_t first = 0;  // of the range
         std::size_t size = 0;     // 0: nothing is on its way or left
         std::size_t next = 0;     // path to be given out
         bool is_here = false;
     };
-    static DevicePathColumns columns(std::byte* memory);
 
     /// Starts the range's next paths in a piece, if there are any.
     void start_piece(Piece& piece);
     void give(Piece& piece, CameraPathBuffer& buffer);
     /// Until the buffer is full or the range ends; throws DeviceError.
     void fill_from_device(CameraPathBuffer& buffer);
-    void fall_back(const std::string& why);
 
-    PathDevice* device_;
+    SharedDevice* device_;
     const DeviceCamera<T>* camera_;
     FilmSampling film_;
     double pupil_z_;
     BasicLensPaths<T> fallback_;
-    std::optional<std::array<Piece, 2>> pieces_;  // none once the device has failed
+    std::optional<std::array<Piece, 2>> pieces_;  // none before the first range, and once the device has failed
     std::size_t current_ = 0;                     // that paths are given out of
     CameraPathRange range_;
     std::uint64_t started_pieces_ = 0;  // up to which sample of the range

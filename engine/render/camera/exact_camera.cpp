@@ -4,16 +4,18 @@
 #include <utility>
 
 #include "engine/base/infinity.h"
-#include "engine/base/input_error.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/pupil/kept_maps.h"
 
 namespace lensproof::render {
 
 ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm,
-                         const Cache& cache, bool meets_light_paths, TracePrecision precision)
-    : lens_(optics::at_wavelengths<double>(lens, wavelengths_nm)),
-      pupil_(pupil::kept_pupil_map(cache, lens_.at(), lens.is_rotationally_symmetric, film_radius_mm)),
+                         const Cache& cache, bool meets_light_paths, TracePrecision precision,
+                         std::shared_ptr<SharedDevice> device)
+    : device_(std::move(device)),
+      lens_(optics::at_wavelengths<double>(lens, wavelengths_nm)),
+      pupil_(pupil::kept_pupil_map(cache, lens_.at(), lens.is_rotationally_symmetric, film_radius_mm,
+                                   {.device = device_.get()})),
       slices_(pupil_, lens_.wavelengths()),
       front_(pupil::front_sphere(lens_.at().front())) {
     if (precision == TracePrecision::in_float) {
@@ -22,22 +24,29 @@ ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wa
     if (meets_light_paths) {
         // Drawn over the whole front in a fifth of all cases, since the map is that of far light.
         entrance_ = pupil::kept_entrance_map(cache, lens_.at(), lens.is_rotationally_symmetric, kInfinity,
-                                             {.defensive_fraction = 0.2});
+                                             {.defensive_fraction = 0.2, .device = device_.get()});
+    }
+    if (device_ && !device_->has_failed()) {
+        put_on_device();
     }
 }
 
-void ExactCamera::fill_on(std::shared_ptr<PathDevice> device) {
+void ExactCamera::put_on_device() {
     if (slices_.tables() == nullptr) {
-        throw InputError(
-            "paths of this lens are drawn by what a device has not: it is not rotationally symmetric, or "
-            "has more than 256 wavelengths");
+        device_->refuse(
+            "it draws from tables of the pupil, which lenses that are not rotationally symmetric have not, nor those "
+            "at more than 256 wavelengths");
+        return;
     }
-    if (in_float_) {
-        on_device_.emplace(std::in_place_type<DeviceCamera<float>>, device->device(), *in_float_, slices_);
-    } else {
-        on_device_.emplace(std::in_place_type<DeviceCamera<double>>, device->device(), lens_, slices_);
+    try {
+        if (in_float_) {
+            on_device_.emplace(std::in_place_type<DeviceCamera<float>>, device_->device(), *in_float_, slices_);
+        } else {
+            on_device_.emplace(std::in_place_type<DeviceCamera<double>>, device_->device(), lens_, slices_);
+        }
+    } catch (const DeviceError& error) {
+        device_->fail(error.what());
     }
-    device_ = std::move(device);
 }
 
 ExactCamera::Paths::Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
@@ -49,7 +58,7 @@ ExactCamera::Paths::TracedInEither ExactCamera::Paths::traced(const ExactCamera&
     const auto in = [&]<class T>(const optics::SpectralLens<T>& lens) -> TracedInEither {
         BasicLensPaths<T> paths(film, lens, camera.slices_);
         BasicSharedRays<T> shared(grid, lens, camera.slices_, film.sensor, film.filter.is_box());
-        if (camera.device_ && film.filter.is_box()) {
+        if (camera.on_device_ && film.filter.is_box()) {
             return Traced<DevicePaths, T>{.paths = {*camera.device_, std::get<DeviceCamera<T>>(*camera.on_device_),
                                                     film, camera.pupil_.plane_z(), std::move(paths)},
                                           .shared = std::move(shared)};

@@ -28,15 +28,13 @@ enum class TracePrecision { in_double, in_float };
 class ExactCamera {
   public:
     /// Of film points within `film_radius_mm` of the axis. `meets_light_paths`: else `sample` and `pdf` must not be
-    /// asked. `cache`: for the maps; the same come from any.
+    /// asked. `cache`: for the maps; the same come from any. `device`: finds the maps and fills buffers of paths of the
+    /// box filter's, the other wavelengths of a ray aside; or null.
     ExactCamera(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm,
-                const Cache& cache, bool meets_light_paths, TracePrecision precision = TracePrecision::in_double);
+                const Cache& cache, bool meets_light_paths, TracePrecision precision = TracePrecision::in_double,
+                std::shared_ptr<SharedDevice> device = nullptr);
     ExactCamera(const ExactCamera&) = delete;  // slices refer to the map
     ExactCamera& operator=(const ExactCamera&) = delete;
-
-    /// From now on paths are filled there, to the same bits, the buffer's other wavelengths aside; the box's alone.
-    /// Throws DeviceError where lens and pupil do not fit, and InputError where the pupil has no tables.
-    void fill_on(std::shared_ptr<PathDevice> device);
 
     class Paths {
       public:
@@ -76,6 +74,7 @@ class ExactCamera {
     }
 
   private:
+    void put_on_device();
     [[nodiscard]] std::optional<pupil::EntranceBeam> beam_of(const LightOrigin& from) const;
     [[nodiscard]] double band_position(std::uint16_t wavelength) const;
     [[nodiscard]] PathPdf beam_pdf(const pupil::EntranceBeam& beam, Vec2d offset,
@@ -85,6 +84,7 @@ class ExactCamera {
     [[nodiscard]] FilmImportance traced_importance(const optics::SpectralLens<T>& lens, const Sensor& sensor,
                                                    const Ray<double>& ray, const spectral::PathWavelengths& path) const;
 
+    std::shared_ptr<SharedDevice> device_;
     optics::SpectralLens<double> lens_;
     std::optional<optics::SpectralLens<float>> in_float_;
     pupil::PupilMap pupil_;
@@ -93,7 +93,6 @@ class ExactCamera {
     /// regions.
     std::optional<pupil::EntranceMap> entrance_;
     pupil::BoundingSphere front_;
-    std::shared_ptr<PathDevice> device_;
     std::optional<std::variant<DeviceCamera<double>, DeviceCamera<float>>> on_device_;
 };
 

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "engine/base/angle.h"
 #include "engine/render/film/film_image.h"
 #include "tests/complaint.h"
+#include "tests/engine/every_device.h"
 #include "tests/test_folder.h"
 
 namespace lensproof::render::prepared_scene_test {
@@ -124,6 +126,100 @@ TEST(PreparedScene, WhatIsDiffractedIsMissingInAnyModelsImage) {
     // Of a circle 2/(π² x) are beyond x λN (DiffractedLight.LeavesTheRestToTheImage).
     EXPECT_NEAR(straight_share("", "diffracted_from_airy = 5.0\n"), 1.0 - 2.0 / (kPi * kPi * 5.0), 1e-12);
     EXPECT_EQ(straight_share("model = \"thin-lens\"\n"), exact);
+}
+
+/// A wall before the Tessar.
+SceneSetup wall(const std::string& model) {
+    return parse_scene_setup(R"([camera]
+lens = "tessar"
+f_number = 5.6
+focus_distance_mm = 1000
+position_mm = [0, 0, 0]
+look_at_mm = [0, 0, 1]
+sensor_mm = [36, 24]
+pixels = [48, 32]
+shutter_s = 0.01
+iso = 100
+response = "luminance"
+model = ")" + model + R"("
+[render]
+layers = 4
+[[lights]]
+kind = "sun"
+direction = [-0.3, 0.6, -1.0]
+illuminance_lx = 1e5
+[[materials]]
+name = "grey"
+kind = "diffuse"
+reflectance = 0.5
+[[objects]]
+name = "wall"
+shape = "polygon"
+vertices_mm = [[-200, -100, 1000], [-200, 100, 1000], [200, 150, 1000], [200, -100, 1000]]
+material = "grey"
+)",
+                             "wall.toml");
+}
+
+struct Heard {
+    std::vector<std::string> refusals;
+    std::vector<std::string> failures;
+};
+
+/// Its picture, with a device's help or without.
+std::vector<float> pictured(const SceneSetup& setup, const PixelFilter& filter, const std::optional<Device>& device,
+                            Heard& heard) {
+    std::shared_ptr<SharedDevice> shared;
+    if (device) {
+        shared = std::make_shared<SharedDevice>(
+            *device, [&](const std::string& why) { heard.refusals.push_back(why); },
+            [&](const std::string& why) { heard.failures.push_back(why); });
+    }
+    const PreparedScene scene(setup, filter, Cache(), {}, {}, std::move(shared));
+    return film_rgb(render_film(scene.render(1, false), {.first = 0, .end = 16}, 2)).pixels;
+}
+
+TEST(PreparedScene, IsTheSamePictureOnADevice) {
+    for (const char* model : {"exact", "exact-float"}) {
+        Heard heard;
+        const std::vector<float> expected = pictured(wall(model), {}, {}, heard);
+        EXPECT_GT(std::ranges::count_if(expected, [](float light) { return light > 0.0F; }), 200);
+        for (const Device& device : every_device()) {
+            EXPECT_EQ(pictured(wall(model), {}, device, heard), expected) << model << ", " << device.name();
+        }
+        EXPECT_TRUE(heard.refusals.empty());
+        EXPECT_TRUE(heard.failures.empty());
+    }
+}
+
+// While pupils are found, as the lens goes there, in the midst of the render: the picture is the same, and one failure
+// is told.
+TEST(PreparedScene, IsTheSamePictureWhereADeviceFails) {
+    Heard none;
+    const std::vector<float> expected = pictured(wall("exact"), {}, {}, none);
+    bool has_failed = true;
+    for (int calls = 0; has_failed; calls += 1 + calls / 4) {
+        Heard heard;
+        EXPECT_EQ(pictured(wall("exact"), {}, Device::stand_in(calls), heard), expected) << calls;
+        EXPECT_LE(heard.failures.size(), 1U) << calls;
+        EXPECT_TRUE(heard.refusals.empty());
+        has_failed = !heard.failures.empty();
+        ASSERT_LT(calls, 1000000);
+    }
+}
+
+// A device is told of once where it cannot help, and the picture comes anyway.
+TEST(PreparedScene, SaysWhereADeviceCannotHelp) {
+    Heard heard;
+    const auto refusal = [&](const SceneSetup& setup, const PixelFilter& filter) {
+        heard.refusals.clear();
+        Heard silent;
+        const std::vector<float> expected = pictured(setup, filter, {}, silent);
+        EXPECT_EQ(pictured(setup, filter, Device::stand_in(), heard), expected);
+        return heard.refusals.size() == 1 ? heard.refusals.front() : fmt::format("{} refusals", heard.refusals.size());
+    };
+    EXPECT_TRUE(says(refusal(wall("thin-lens"), {}), "thin-lens"));
+    EXPECT_TRUE(says(refusal(wall("exact"), PixelFilter::named("gaussian")), "gaussian"));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ SpectralLens<T> at_two(const Lens& lens) {
 /// Traces rays, every second one at each wavelength, event by event; returns how many events there were.
 template <class T>
 std::size_t compare_events(const Device& device, const Lens& lens, const std::vector<Ray<double>>& given,
-                           const EventWay& way) {
+                           const RayWay<T>& way) {
     const SpectralLens<T> at = at_two<T>(lens);
     std::vector<Ray<T>> rays;
     std::ranges::transform(given, std::back_inserter(rays), convert_ray<T, double>);
@@ -34,21 +34,11 @@ std::size_t compare_events(const Device& device, const Lens& lens, const std::ve
     }
     const DeviceLens<T> there(device, at);
     const DeviceEvents<T> found(device, there, rays, wavelengths, way);
-    const StrayMirrors<T> mirrors{static_cast<T>(way.mirrors.sensor), static_cast<T>(way.mirrors.blades)};
     std::size_t count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         std::vector<SurfaceEvent<T>> events;
-        const auto visit = [&](const SurfaceEvent<T>& event) { events.push_back(event); };
-        const auto traced = [&]<Rims rims>() {
-            const TraceLens<T>& of = at.at(wavelengths[i]);
-            if (!way.reflections.empty()) {
-                return trace_ghost<Direction::forward, rims>(of, way.reflections, rays[i], mirrors, visit);
-            }
-            return way.direction == Direction::forward ? trace<Direction::forward, rims>(of, rays[i], visit)
-                                                       : trace<Direction::reverse, rims>(of, rays[i], visit);
-        };
-        const TracedRay<T> end = way.rims == Rims::clip ? traced.template operator()<Rims::clip>()
-                                                        : traced.template operator()<Rims::follow>();
+        const TracedRay<T> end = trace_along(at.at(wavelengths[i]), way, rays[i],
+                                             [&](const SurfaceEvent<T>& event) { events.push_back(event); });
         const std::string where = device.name() + ", ray " + std::to_string(i);
         EXPECT_EQ(found.end(i).status, end.status) << where;
         EXPECT_EQ(found.end(i).surface, end.surface) << where;
@@ -109,51 +99,110 @@ TEST(DeviceEvents, FollowGhosts) {
     for (const Device& device : every_device()) {
         std::size_t events = 0;
         for (const GhostPath& path : paths) {
-            const EventWay way{.reflections = path, .mirrors = {.sensor = 0.1, .blades = 0.05}};
-            events += compare_events<double>(device, lens, rays, way);
-            events += compare_events<float>(device, lens, rays, way);
+            events += compare_events<double>(device, lens, rays,
+                                             {.reflections = path, .mirrors = {.sensor = 0.1, .blades = 0.05}});
+            events += compare_events<float>(device, lens, rays,
+                                            {.reflections = path, .mirrors = {.sensor = 0.1F, .blades = 0.05F}});
         }
         EXPECT_GT(events, 40U * paths.size());
     }
 }
 
-// More rays than go to a device at a time, the last of them in a short piece.
-TEST(DeviceTrace, TakesRaysInPieces) {
+constexpr std::size_t kPiece = 256;
+
+/// More rays than go to a device at a time, the last of them in a short piece.
+RayBatch<float> many_rays(const Lens& lens) {
+    RayBatch<float> rays(3 * kPiece - 17);
+    rays.size = rays.capacity;
+    const std::vector<Ray<double>> given = rays_at(lens, rays.size, 0.1);
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        rays.set(static_cast<int>(i), convert_ray<float>(given[i]));
+        rays.wavelength[i] = i / 7 % 2;
+    }
+    return rays;
+}
+
+constexpr BatchSettings kTransmittance{.carry = Carry::transmittance};
+
+void expect_same(const RayBatch<float>& found, const RayBatch<float>& expected) {
+    EXPECT_EQ(found.status, expected.status);
+    EXPECT_EQ(found.origin.x, expected.origin.x);
+    EXPECT_EQ(found.direction.z, expected.direction.z);
+    EXPECT_EQ(found.transmittance, expected.transmittance);
+    EXPECT_EQ(found.optical_path, expected.optical_path) << "not asked for";
+}
+
+TEST(ColumnTracer, TakesRaysInPieces) {
     const Lens lens = formats::load_lens("tessar");
     const SpectralLens<float> at = at_two<float>(lens);
-    const std::vector<Ray<double>> some = rays_at(lens, 1000, 0.1);
-    RayBatch<float> expected(3 * (1 << 18) - 17);
-    expected.size = expected.capacity;
-    for (int i = 0; i < expected.size; ++i) {
-        expected.set(i, convert_ray<float>(some[static_cast<std::size_t>(i) % some.size()]));
-        expected.wavelength[static_cast<std::size_t>(i)] = i / 1000 % 2;
-    }
-    const RayBatch<float> given = expected;
-    const BatchSettings settings{.carry = Carry::transmittance};
-    trace_batch(at, expected, settings);
+    const RayBatch<float> given = many_rays(lens);
+    RayBatch<float> expected = given;
+    trace_batch(at, expected, kTransmittance);
     for (const Device& device : every_device()) {
-        RayBatch<float> found = given;
-        trace_columns_on(device, DeviceLens<float>(device, at), found.columns(), settings);
-        EXPECT_TRUE(std::ranges::equal(found.status, expected.status));
-        EXPECT_EQ(found.origin.x, expected.origin.x);
-        EXPECT_EQ(found.direction.z, expected.direction.z);
-        EXPECT_EQ(found.transmittance, expected.transmittance);
-        EXPECT_EQ(found.optical_path, given.optical_path) << "not asked for";
+        SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
+        ColumnTracer<float> tracer(at, &shared, kPiece);
+        for (const int size : {100, given.size, 300}) {  // as they come
+            RayBatch<float> found = given;
+            found.size = size;
+            tracer.trace(found.columns(), kTransmittance);
+            if (size == given.size) {
+                expect_same(found, expected);
+            } else {
+                EXPECT_TRUE(
+                    std::equal(found.origin.x.begin(), found.origin.x.begin() + size, expected.origin.x.begin()));
+                EXPECT_EQ(found.origin.x.back(), given.origin.x.back()) << "beyond the size";
+            }
+        }
     }
 }
 
-TEST(DeviceTrace, OfNoRaysIsNothing) {
+// Whichever call fails first: every ray is traced, and that is told once.
+TEST(ColumnTracer, GoesOnWhereADeviceFails) {
+    const Lens lens = formats::load_lens("tessar");
+    const SpectralLens<float> at = at_two<float>(lens);
+    const RayBatch<float> given = many_rays(lens);
+    RayBatch<float> expected = given;
+    trace_batch(at, expected, kTransmittance);
+    int told = 1;
+    int calls = 0;
+    for (; told == 1 && calls < 200; ++calls) {
+        told = 0;
+        SharedDevice shared(Device::stand_in(calls), {}, [&](const std::string& /*why*/) { ++told; });
+        ColumnTracer<float> tracer(at, &shared, kPiece);
+        RayBatch<float> found = given;
+        tracer.trace(found.columns(), kTransmittance);
+        expect_same(found, expected);
+        EXPECT_EQ(tracer.is_on_device(), told == 0);
+        EXPECT_EQ(shared.has_failed(), told == 1);
+    }
+    EXPECT_EQ(told, 0);
+    EXPECT_GT(calls, 40);
+}
+
+TEST(ColumnTracer, OfNoRaysIsNothing) {
     const SpectralLens<double> at = at_two<double>(formats::load_lens("tessar"));
     for (const Device& device : every_device()) {
-        const DeviceLens<double> there(device, at);
+        SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
         RayBatch<double> none(0);
-        trace_columns_on(device, there, none.columns());
-        DeviceEvents<double>(device, there, {}, {}, {});
+        ColumnTracer<double>(at, &shared).trace(none.columns());
+        DeviceEvents<double>(device, DeviceLens<double>(device, at), {}, {}, {});
     }
+}
+
+TEST(ColumnTracer, NeedsNoDevice) {
+    const Lens lens = formats::load_lens("tessar");
+    const SpectralLens<float> at = at_two<float>(lens);
+    RayBatch<float> expected = many_rays(lens);
+    RayBatch<float> found = expected;
+    trace_batch(at, expected, kTransmittance);
+    ColumnTracer<float> tracer(at, nullptr);
+    EXPECT_FALSE(tracer.is_on_device());
+    tracer.trace(found.columns(), kTransmittance);
+    expect_same(found, expected);
 }
 
 // Whichever call fails first: an error, and nothing else.
-TEST(DeviceTrace, SaysThatADeviceFails) {
+TEST(DeviceEvents, SayThatADeviceFails) {
     const Lens lens = formats::load_lens("tessar");
     const SpectralLens<double> at = at_two<double>(lens);
     const std::vector<Ray<double>> rays = rays_at(lens, 10, 0.1);

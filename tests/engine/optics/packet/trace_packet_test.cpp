@@ -67,10 +67,11 @@ Fates compare_batch(const SpectralLens<T>& lens, const std::vector<Ray<double>>&
     const bool is_coated = std::ranges::any_of(
         lens.at().front().specials, [](const SpecialSurface<T>& special) { return !special.coating.layers.empty(); });
     for (const Device& device : every_device()) {
-        const DeviceLens<T> there(device, lens);
+        SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
+        ColumnTracer<T> tracer(lens, &shared);
         const double tolerance = is_coated && device.is_gpu() ? 100.0 * std::numeric_limits<T>::epsilon() : 0.0;
         expect_same(device.name(), tolerance, [&](RayBatch<T>& batch) {
-            trace_columns_on<direction>(device, there, batch.columns(), {.carry = Carry::all, .rims = rims});
+            tracer.template trace<direction>(batch.columns(), {.carry = Carry::all, .rims = rims});
         });
     }
     return fates;

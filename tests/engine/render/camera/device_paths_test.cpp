@@ -31,7 +31,7 @@ struct Told {
 template <class T>
 Paths on_device(const Device& device, const TestCamera& camera, const optics::SpectralLens<T>& lens,
                 const CameraPathRange& range, int capacity, Told* told = nullptr) {
-    PathDevice fills(device, [&](const std::string& why) {
+    SharedDevice fills(device, {}, [&](const std::string& why) {
         ASSERT_NE(told, nullptr) << why;
         ++told->times;
         told->why = why;
@@ -87,7 +87,7 @@ TEST(DevicePaths, OfNoSamplesOrPixelsAreNone) {
 TEST(DevicePaths, BeginAnewWithARange) {
     const TestCamera camera("tessar", 70.0);
     for (const Device& device : every_device()) {
-        PathDevice fills(device, [](const std::string& why) { FAIL() << why; });
+        SharedDevice fills(device, {}, [](const std::string& why) { FAIL() << why; });
         const DeviceCamera<double> there(device, camera.lens, camera.slices);
         DevicePaths<double> paths(fills, there, camera.film, camera.pupil.plane_z(),
                                   LensPaths(camera.film, camera.lens, camera.slices));
@@ -99,6 +99,26 @@ TEST(DevicePaths, BeginAnewWithARange) {
         EXPECT_EQ(buffer.size, 1);
         EXPECT_EQ(buffer.pixel[0], 27U);
         EXPECT_FALSE(paths.fill(buffer));
+    }
+}
+
+// As threads have them: each goes through a range of its own.
+TEST(DevicePaths, CopiesGoTheirOwnWay) {
+    const TestCamera camera("tessar", 70.0);
+    const CameraPathRange other{.first_pixel = 30, .pixels = 10, .samples = 40};
+    const auto on_processors = [&](const CameraPathRange& range) {
+        return all_paths(LensPaths(camera.film, camera.lens, camera.slices), range, 64);
+    };
+    for (const Device& device : every_device()) {
+        SharedDevice fills(device, {}, [](const std::string& why) { FAIL() << why; });
+        const DeviceCamera<double> there(device, camera.lens, camera.slices);
+        DevicePaths<double> paths(fills, there, camera.film, camera.pupil.plane_z(),
+                                  LensPaths(camera.film, camera.lens, camera.slices));
+        paths.start(kTile);
+        expect_same(all_paths(DevicePaths<double>(paths), other, 64), on_processors(other), "a copy");
+        DevicePaths<double> copy = paths;
+        copy.start(other);
+        expect_same(all_paths(paths, kTile, 64), on_processors(kTile), "the first, begun anew");
     }
 }
 

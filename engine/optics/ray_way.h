@@ -1,0 +1,30 @@
+// engine/optics/ray_way.h — which way rays take, where that is known only when a program runs.
+#pragma once
+#include "engine/optics/ghost_path.h"
+
+namespace lensproof::optics {
+
+/// Through the lens, or along a ghost where there are reflections, which rays then enter forward.
+template <class T, class Path = GhostPath>
+struct RayWay {
+    Direction direction = Direction::forward;
+    Rims rims = Rims::clip;
+    Path reflections{};
+    StrayMirrors<T> mirrors{};
+};
+
+/// `trace`, or `trace_ghost`.
+template <class OfLens, class T, class Path, class Visitor>
+constexpr TracedRay<T> trace_along(const OfLens& lens, const RayWay<T, Path>& way, const Ray<T>& ray, Visitor&& visit) {
+    const auto with_rims = [&]<Rims rims>() {
+        if (!way.reflections.empty()) {
+            return trace_ghost<Direction::forward, rims>(lens, way.reflections, ray, way.mirrors, visit);
+        }
+        return way.direction == Direction::forward ? trace_through<Direction::forward, rims, true>(lens, ray, visit)
+                                                   : trace_through<Direction::reverse, rims, true>(lens, ray, visit);
+    };
+    return way.rims == Rims::clip ? with_rims.template operator()<Rims::clip>()
+                                  : with_rims.template operator()<Rims::follow>();
+}
+
+}  // namespace lensproof::optics
