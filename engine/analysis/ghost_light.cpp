@@ -58,7 +58,8 @@ struct GridRays {
 /// The rays of a square grid that stand in the region; its first node stands at `shift` spacings from the corner.
 GridRays grid_rays(const GhostScene& scene, const optics::GhostPath& path, const GhostRegion& region, double spacing,
                    Vec2d shift) {
-    GridRays grid;
+    std::vector<GridCell> places;
+    std::vector<Vec2d> offsets;
     const double share = spacing * spacing / scene.pupil_area;
     const auto first_node = [&](int cell, double shifted) {
         return static_cast<int>(std::ceil(cell * region.cell / spacing - shifted));
@@ -66,14 +67,18 @@ GridRays grid_rays(const GhostScene& scene, const optics::GhostPath& path, const
     for (const auto& [cell_x, cell_y] : region.cells) {
         for (int y = first_node(cell_y, shift.y); y < first_node(cell_y + 1, shift.y); ++y) {
             for (int x = first_node(cell_x, shift.x); x < first_node(cell_x + 1, shift.x); ++x) {
-                const Vec2d offset = region.corner + Vec2d{(x + shift.x) * spacing, (y + shift.y) * spacing};
-                ++grid.traced;
-                if (const auto landed = landing(scene, path, offset)) {
-                    grid.at.emplace(GhostRegion::key(x, y), grid.rays.size());
-                    grid.places.push_back({x, y});
-                    grid.rays.push_back({offset, landed->point, share * landed->transmittance});
-                }
+                places.push_back({x, y});
+                offsets.push_back(region.corner + Vec2d{(x + shift.x) * spacing, (y + shift.y) * spacing});
             }
+        }
+    }
+    const std::vector<std::optional<Landing>> landed = landings(scene, path, offsets);
+    GridRays grid{.rays = {}, .at = {}, .places = {}, .traced = static_cast<int>(offsets.size())};
+    for (std::size_t i = 0; i < landed.size(); ++i) {
+        if (landed[i]) {
+            grid.at.emplace(GhostRegion::key(places[i].x, places[i].y), grid.rays.size());
+            grid.places.push_back(places[i]);
+            grid.rays.push_back({offsets[i], landed[i]->point, share * landed[i]->transmittance});
         }
     }
     return grid;
@@ -82,15 +87,19 @@ GridRays grid_rays(const GhostScene& scene, const optics::GhostPath& path, const
 /// Rays at random over what the region leaves of the front element.
 std::vector<LandedRay> rays_elsewhere(const GhostScene& scene, const optics::GhostPath& path, const GhostRegion& region,
                                       int count, Random& random) {
-    std::vector<LandedRay> landed;
-    const double elsewhere = scene.beam.area() - region.area();
-    for (int i = 0; i < count; ++i) {
-        Vec2d offset;
+    std::vector<Vec2d> offsets(static_cast<std::size_t>(count));
+    for (Vec2d& offset : offsets) {
         do {
             offset = region.corner + scene.beam.side() * draw(random);
         } while (region.contains(offset));
-        if (const auto at = landing(scene, path, offset)) {
-            landed.push_back({offset, at->point, elsewhere / count * at->transmittance / scene.pupil_area});
+    }
+    const double elsewhere = scene.beam.area() - region.area();
+    const std::vector<std::optional<Landing>> found = landings(scene, path, offsets);
+    std::vector<LandedRay> landed;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (found[i]) {
+            landed.push_back(
+                {offsets[i], found[i]->point, elsewhere / count * found[i]->transmittance / scene.pupil_area});
         }
     }
     return landed;

@@ -119,8 +119,7 @@ class Mesh {
         traced_ = vertices_.size();
     }
     void trace(const std::vector<Vec2d>& offsets) {
-        rays_.resize(offsets.size());
-        rim_rays(scene_, path_, offsets, rays_);
+        rays_ = rim_rays(scene_, path_, offsets);
         drawn_.rays += static_cast<int>(offsets.size());
     }
 

@@ -35,12 +35,16 @@ enum class Fate { lands, may_land, ends, stays_out };
 class Grid {
   public:
     Grid(const GhostScene& scene, const optics::GhostPath& path, const GhostRegion& region, const Cells& cells) {
-        int landing = 0;
+        std::vector<Vec2d> centres;
         for (const auto& [x, y] : cells) {
-            const Vec2d centre{region.corner.x + (x + 0.5) * region.cell, region.corner.y + (y + 0.5) * region.cell};
-            LandingMargins margins = landing_margins(scene, path, centre);
+            centres.push_back(region.corner + region.cell * Vec2d{x + 0.5, y + 0.5});
+        }
+        std::vector<LandingMargins> found = landing_margins(scene, path, centres);
+        int landing = 0;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            LandingMargins& margins = found[i];
             landing += margins.arrives && std::ranges::max(margins.margins) <= 0.0 ? 1 : 0;
-            at_.emplace(GhostRegion::key(x, y), std::move(margins));
+            at_.emplace(GhostRegion::key(cells[i].x, cells[i].y), std::move(margins));
         }
         is_fine_ = landing >= kResolved;
         for (const GridCell& cell : cells) {

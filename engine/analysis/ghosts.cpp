@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/analysis/ghost_device.h"
 #include "engine/analysis/ghost_orders.h"
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
@@ -133,6 +134,7 @@ SurfaceShare surface_share(const GhostScene& scene, const WeighedRays& rays, int
         share.perfect = rays.gone_in(other);
         return share;
     }
+    other.device = nullptr;  // which has the lens as it is
     other.lens = with_coating(scene.lens, surface, {.layers = {}, .reflectance = 0.0});
     share.perfect = rays.gone_in(other);
     constexpr double kIndex = 1.38;  // of magnesium fluoride (Macleod, Thin-Film Optical Filters)
@@ -161,6 +163,19 @@ std::vector<SurfaceShare> surface_shares(const GhostScene& scene, const GhostSur
     return shares;
 }
 
+std::shared_ptr<GhostDevice> ghost_device(const optics::TraceLens<double>& lens,
+                                          const std::shared_ptr<SharedDevice>& device) {
+    if (!device || device->has_failed()) {
+        return nullptr;
+    }
+    try {
+        return std::make_shared<GhostDevice>(device, lens);
+    } catch (const DeviceError& error) {
+        device->fail(error.what());
+        return nullptr;
+    }
+}
+
 }  // namespace
 
 GhostScene ghost_scene(const optics::Lens& lens, const GhostSettings& settings, double wavelength_nm) {
@@ -178,7 +193,8 @@ GhostScene ghost_scene(const optics::Lens& lens, const GhostSettings& settings, 
             .beam = FrontBeam(traced, settings.source_angle),
             .mirrors = settings.mirrors,
             .image_radius = settings.image_radius,
-            .pupil_area = 0.25 * std::numbers::pi * diameter * diameter * std::cos(settings.source_angle)};
+            .pupil_area = 0.25 * std::numbers::pi * diameter * diameter * std::cos(settings.source_angle),
+            .device = ghost_device(traced, settings.device)};
 }
 
 std::optional<double> image_radius(const optics::Lens& lens, double wavelength_nm) {

@@ -2,10 +2,12 @@
 // coat.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "engine/analysis/ghost_light.h"
+#include "engine/device/shared_device.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial_ghost.h"
 
@@ -24,6 +26,7 @@ struct GhostSettings {
     double image_radius = 0.0;  // mm
     GhostSampling sampling;
     int threads = 0;
+    std::shared_ptr<SharedDevice> device{};  // that traces rays, or null
 };
 
 /// A ghost; energies as in GhostLight.

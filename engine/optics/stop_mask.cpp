@@ -36,20 +36,6 @@ StopMask::StopMask(const StopShape& shape) {
     }
 }
 
-StopMask::EdgeMargin StopMask::edge_margin(double x, double y) const {
-    if (texture_) {
-        return {transmittance(x, y) > 0.0 ? -1.0 : kInfinity, 0};
-    }
-    EdgeMargin worst;
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-        const double margin = edges_[i].margin(x, y);
-        if (i == 0 || margin > worst.margin) {
-            worst = {margin, static_cast<int>(i)};
-        }
-    }
-    return worst;
-}
-
 double StopOpening::Edge::radius() const {
     return radius_squared > 0.0 ? std::sqrt(radius_squared) : kInfinity;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/infinity.h"
 #include "engine/base/vec.h"
 #include "engine/optics/prescription.h"
 
@@ -53,6 +54,27 @@ struct StopOpening {
         return texture[row * static_cast<std::size_t>(texture_columns) +
                        static_cast<std::size_t>(cell(x, texture_columns))];
     }
+
+    /// How far a point stands inside (≤ 0) or outside (> 0) the blade's edge that is nearest to being crossed, and
+    /// which that is, from 0: smooth along each edge. A texture has no edges but where it is dark: an infinite margin
+    /// there, −1 elsewhere.
+    struct EdgeMargin {
+        double margin = -1.0;
+        int edge = 0;
+    };
+    [[nodiscard]] constexpr EdgeMargin edge_margin(double x, double y) const {
+        if (!texture.empty()) {
+            return {transmittance(x, y) > 0.0 ? -1.0 : kInfinity, 0};
+        }
+        EdgeMargin worst;
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            const double margin = edges[i].margin(x, y);
+            if (i == 0 || margin > worst.margin) {
+                worst = {margin, static_cast<int>(i)};
+            }
+        }
+        return worst;
+    }
 };
 
 /// The part of a stop's circle that is open, at a given semi-diameter.
@@ -74,14 +96,7 @@ class StopMask {
     /// The transmittance, 0 to 1, at a point of the stop's plane in units of its semi-diameter, inside the unit circle.
     [[nodiscard]] double transmittance(double x, double y) const { return opening().transmittance(x, y); }
 
-    /// How far a point stands inside (≤ 0) or outside (> 0) the blade's edge that is nearest to being crossed, and
-    /// which that is, from 0: smooth along each edge. A texture has no edges but where it is dark: an infinite margin
-    /// there, −1 elsewhere.
-    struct EdgeMargin {
-        double margin = -1.0;
-        int edge = 0;
-    };
-    [[nodiscard]] EdgeMargin edge_margin(double x, double y) const;
+    [[nodiscard]] StopOpening::EdgeMargin edge_margin(double x, double y) const { return opening().edge_margin(x, y); }
 
     /// A point's place beside an edge of the opening, in units of the semi-diameter.
     struct NearEdge {

@@ -5,8 +5,8 @@
 namespace lensproof::optics {
 
 /// What a surface has beyond a centred sphere; null where it is one.
-template <class T>
-const SpecialSurface<T>* special_of(const TraceLens<T>& lens, const TraceSurface<T>& surface) {
+template <class OfLens, class T>
+constexpr const typename OfLens::Special* special_of(const OfLens& lens, const TraceSurface<T>& surface) {
     return surface.special < 0 ? nullptr : &lens.specials[static_cast<std::size_t>(surface.special)];
 }
 
@@ -18,10 +18,10 @@ SurfaceShape<T> shape_of(const TraceLens<T>& lens, const TraceSurface<T>& surfac
 }
 
 /// A point of lens space in the surface's own axes, mm; and back.
-template <class T>
-Vec3<T> to_own_axes(const TraceLens<T>& lens, const TraceSurface<T>& surface, const Vec3<T>& point) {
+template <class OfLens, class T>
+constexpr Vec3<T> to_own_axes(const OfLens& lens, const TraceSurface<T>& surface, const Vec3<T>& point) {
     const Vec3<T> from_vertex{point.x, point.y, point.z - surface.vertex_z};
-    const SpecialSurface<T>* special = special_of(lens, surface);
+    const typename OfLens::Special* special = special_of(lens, surface);
     return special == nullptr ? from_vertex
                               : special->to_own(from_vertex - Vec3<T>{special->vertex.x, special->vertex.y, T(0)});
 }
