@@ -12,6 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/device_option.h"
 #include "experiments/cli/findings_text.h"
 #include "experiments/cli/ghost_image.h"
 #include "experiments/cli/ghost_options.h"
@@ -35,6 +36,7 @@ struct GhostsOptions {
     std::optional<double> image_circle_mm;
     std::string plot_file;
     GhostImageOptions image;
+    std::string device = "cpu";
 };
 
 analysis::GhostSettings settings_of(const GhostsOptions& options, const AnalysedLens& analysed) {
@@ -56,7 +58,8 @@ analysis::GhostSettings settings_of(const GhostsOptions& options, const Analysed
         .mirrors = stray_mirrors(options.mirrors),
         .polarised = options.polarised,
         .sampling = {.seed = options.common.seed},
-        .threads = options.common.threads};
+        .threads = options.common.threads,
+        .device = shared_device(options.device, OnRefusal::end)};
     for (const double wavelength_nm : analysed.settings.wavelengths_nm) {
         if (wavelength_nm != settings.reference_wavelength_nm) {
             settings.wavelengths_nm.push_back(wavelength_nm);
@@ -318,6 +321,7 @@ void add_ghosts_command(Program& program) {
         .type_name("FILE");
     add_ghost_image_options(command, options->image);
     add_mirror_options(command, options->mirrors);
+    add_device_option(command, options->device);
     add_common_options(command, options->common);
     command.runs([options] { return run_ghosts(*options); });
 }

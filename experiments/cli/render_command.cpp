@@ -14,6 +14,7 @@
 #include "engine/render/metering.h"
 #include "engine/render/prepared_scene.h"
 #include "engine/scene/scene_build.h"
+#include "experiments/cli/device_option.h"
 #include "experiments/cli/planned_render.h"
 #include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
@@ -124,6 +125,7 @@ struct RenderWishes {
     std::string paths = "camera";
     std::vector<std::string> passes;
     bool is_audited = false;
+    std::string device = "cpu";
 };
 
 /// Takes a plan's model, bounces and wavelengths for the scene, and its passes for what is wished. Throws InputError
@@ -150,6 +152,7 @@ studies::Plan take_plan(const RenderJobOptions& options, RenderWishes& wishes, r
 
 int run_render(const RenderJobOptions& options, RenderWishes wishes) {
     const RenderFiles files = render_files(options);  // before long work
+    const std::shared_ptr<SharedDevice> device = shared_device(wishes.device, OnRefusal::end);
     check_passes(wishes.passes, options);
     if ((wishes.model == "auto") == wishes.tolerance.empty()) {
         throw InputError("--model auto and --tolerance go together, expected both or neither");
@@ -183,7 +186,8 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
     const render::PixelFilter filter = filter_of(setup.sensor, options);
     const auto scene = said_of_scene(options, [&] {
         return std::make_unique<render::PreparedScene>(
-            setup, filter, Cache::standard(), render::PassIntegrators{.usual = &render::integrator_named(paths)});
+            setup, filter, Cache::standard(), render::PassIntegrators{.usual = &render::integrator_named(paths)},
+            std::nullopt, device);
     });
     for (const std::string& remark : scene->remarks()) {
         print_message("lensproof: {}\n", remark);
@@ -276,6 +280,7 @@ void add_render_command(Program& program) {
     command.add_flag("--audit", wishes->is_audited,
                      "Also say where the light goes that comes into the lens: imaged, ghosts, barrel, beside the film, "
                      "out of the front, clipped, absorbed");
+    add_device_option(command, wishes->device);
     command.runs([options, wishes] { return run_render(*options, *wishes); });
 }
 

@@ -3,20 +3,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <type_traits>
 
 #include "engine/base/csv.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
+#include "engine/optics/device/device_trace.h"
 #include "engine/optics/float_error.h"
-#include "engine/optics/ghost_path.h"
 #include "engine/optics/lens.h"
+#include "engine/optics/ray_way.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/device_option.h"
 #include "experiments/cli/ghost_options.h"
 #include "experiments/cli/terminal.h"
 #include "experiments/cli/trace_rows.h"
@@ -46,13 +50,14 @@ struct TraceOptions {
     bool polarised = false;
     std::vector<std::string> sequence;
     MirrorOptions mirrors;
+    std::string device = "cpu";
 };
 
-/// The way that rays take: through the lens, or along a ghost.
+/// How rays are traced.
 struct Way {
-    optics::GhostPath reflections;  // empty: through
-    optics::StrayMirrors<double> mirrors;
-    bool polarised = false;  // rows say what becomes of polarised light too
+    optics::RayWay<double> along;
+    bool polarised = false;          // rows say what becomes of polarised light too
+    SharedDevice* device = nullptr;  // that traces, or null
 };
 
 // Far beyond any scene, far below what would overflow when squared, in a float too.
@@ -109,10 +114,11 @@ class LensAtWavelengths {
   public:
     explicit LensAtWavelengths(const optics::Lens& lens) : lens_(&lens) {}
 
+    static constexpr std::size_t kMost = 64;
+
     const optics::TraceLens<T>& at(double wavelength_nm) {
-        constexpr std::size_t kKept = 64;
         if (!kept_.contains(wavelength_nm)) {
-            if (kept_.size() == kKept) {
+            if (kept_.size() == kMost) {
                 kept_.clear();
             }
             kept_.emplace(wavelength_nm, optics::at_wavelength<T>(*lens_, wavelength_nm));
@@ -145,75 +151,195 @@ Vec3<T> travelling(const Vec3<T>& direction, const T& index) {
     return index < T(0) ? T(-1) * direction : direction;
 }
 
-/// Tells `visit` a row a surface.
-template <class T, optics::Direction direction, optics::Rims rims, class Visit>
-void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Way& way, const Visit& visit) {
+template <class T>
+optics::RayWay<T> way_in(const optics::RayWay<double>& way) {
+    return {.direction = way.direction,
+            .rims = way.rims,
+            .reflections = way.reflections,
+            .mirrors = {static_cast<T>(way.mirrors.sensor), static_cast<T>(way.mirrors.blades)}};
+}
+
+template <class T>
+Ray<T> ray_in(const optics::TraceLens<T>& lens, const GivenRay& given, optics::Direction direction) {
     const auto cast = [](const Vec3d& v) {
         return Vec3<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
     };
     // Normalised in the working precision: a double's unit vector is not one to long double's last digits.
-    const T index_at_sensor = lens.surfaces.back().index_after;
-    const Vec3<T> given_direction = normalized(cast(given.ray.direction));
-    const Ray<T> ray{cast(given.ray.origin), direction == optics::Direction::forward
-                                                 ? given_direction
-                                                 : travelling(given_direction, index_at_sensor)};
-    std::optional<optics::PolarisedEvents<T>> polarised;
-    if (way.polarised) {
-        polarised.emplace(lens, way.reflections, ray.direction, direction, rims);
+    const Vec3<T> stated = normalized(cast(given.ray.direction));
+    return {cast(given.ray.origin),
+            direction == optics::Direction::forward ? stated : travelling(stated, lens.surfaces.back().index_after)};
+}
+
+/// Tells `visit` a row a surface of one ray: called with what befalls it, in order, and then with its end.
+template <class T, class Visit>
+class RayRows {
+  public:
+    /// All outlive it.
+    RayRows(const optics::TraceLens<T>& lens, const GivenRay& given, const Ray<T>& ray, const Way& way,
+            const Visit& visit)
+        : lens_(lens), given_(given), way_(way), visit_(visit) {
+        if (way.polarised) {
+            polarised_.emplace(lens, way.along.reflections, ray.direction, way.along.direction, way.along.rims);
+        }
     }
-    const auto tell = [&](TraceRow<T> row) {
-        if (polarised) {
-            row.polarised = polarised->light(row.transmittance);
+
+    void operator()(const optics::SurfaceEvent<T>& event) {
+        if (polarised_) {
+            (*polarised_)(event);
         }
-        visit(row);
-    };
-    const auto visit_event = [&](const optics::SurfaceEvent<T>& event) {
-        if (polarised) {
-            (*polarised)(event);
-        }
-        const bool is_sensor = event.surface == static_cast<int>(lens.surfaces.size());
-        T index = index_at_sensor;
+        const bool is_sensor = event.surface == static_cast<int>(lens_.surfaces.size());
+        T index = index_at_sensor();
         if (!is_sensor) {
-            const optics::TraceSurface<T>& surface = lens.surfaces[static_cast<std::size_t>(event.surface)];
+            const optics::TraceSurface<T>& surface = lens_.surfaces[static_cast<std::size_t>(event.surface)];
             const bool is_behind = (event.ray.direction.z > T(0)) == (event.status != optics::RayStatus::missed);
             index = is_behind ? surface.index_after : surface.index_before;
         }
-        tell({given.id, is_sensor ? kSensorName : std::to_string(event.surface + 1),
+        tell({given_.id, is_sensor ? kSensorName : std::to_string(event.surface + 1),
               Ray<T>{event.ray.origin, travelling(event.ray.direction, index)}, event.optical_path, event.transmittance,
               event.status});
-    };
-    const optics::StrayMirrors<T> mirrors{static_cast<T>(way.mirrors.sensor), static_cast<T>(way.mirrors.blades)};
-    const optics::TracedRay<T> traced = way.reflections.empty() ? optics::trace<direction, rims>(lens, ray, visit_event)
-                                                                : optics::trace_ghost<direction, rims>(
-                                                                      lens, way.reflections, ray, mirrors, visit_event);
-    const bool ended =
-        !optics::gets_through(traced.status) || (rims == optics::Rims::clip && traced.status != optics::RayStatus::ok);
-    if (ended || direction == optics::Direction::reverse) {
-        return;
     }
-    if (traced.ray.direction.z > T(0)) {
-        const optics::PlanePoint<T> image = optics::meet_plane(traced.ray, lens.image_z);
-        tell({given.id, kSensorName, Ray<T>{image.point, travelling(traced.ray.direction, index_at_sensor)},
-              traced.optical_path + index_at_sensor * image.distance, traced.transmittance, optics::RayStatus::ok});
-    } else {
-        tell({given.id, kSensorName, traced.ray, traced.optical_path, traced.transmittance, optics::RayStatus::missed});
+
+    void end(const optics::TracedRay<T>& traced) {
+        const bool has_ended = !optics::gets_through(traced.status) ||
+                               (way_.along.rims == optics::Rims::clip && traced.status != optics::RayStatus::ok);
+        if (has_ended || way_.along.direction == optics::Direction::reverse) {
+            return;
+        }
+        if (traced.ray.direction.z > T(0)) {
+            const optics::PlanePoint<T> image = optics::meet_plane(traced.ray, lens_.image_z);
+            tell({given_.id, kSensorName, Ray<T>{image.point, travelling(traced.ray.direction, index_at_sensor())},
+                  traced.optical_path + index_at_sensor() * image.distance, traced.transmittance,
+                  optics::RayStatus::ok});
+        } else {
+            tell({given_.id, kSensorName, traced.ray, traced.optical_path, traced.transmittance,
+                  optics::RayStatus::missed});
+        }
     }
-}
+
+  private:
+    [[nodiscard]] const T& index_at_sensor() const { return lens_.surfaces.back().index_after; }
+
+    void tell(TraceRow<T> row) const {
+        if (polarised_) {
+            row.polarised = polarised_->light(row.transmittance);
+        }
+        visit_(row);
+    }
+
+    const optics::TraceLens<T>& lens_;
+    const GivenRay& given_;
+    const Way& way_;
+    const Visit& visit_;
+    std::optional<optics::PolarisedEvents<T>> polarised_;
+};
+
+/// Rays through the lens, in their order.
+template <class T, class Visit>
+class RayTracing {
+  public:
+    /// All outlive it.
+    RayTracing(const optics::Lens& lens, const Way& way, const Visit& visit)
+        : lenses_(lens), way_(way), along_(way_in<T>(way.along)), visit_(visit) {}
+
+    void trace(const GivenRay& given) {
+        const optics::TraceLens<T>& lens = lenses_.at(given.wavelength_nm);
+        const Ray<T> ray = ray_in(lens, given, along_.direction);
+        RayRows<T, Visit> rows(lens, given, ray, way_, visit_);
+        rows.end(optics::trace_along(lens, along_, ray, [&](const optics::SurfaceEvent<T>& event) { rows(event); }));
+    }
+
+  private:
+    LensAtWavelengths<T> lenses_;
+    const Way& way_;
+    optics::RayWay<T> along_;
+    const Visit& visit_;
+};
+
+/// The same by the way's device, a chunk of rays at a time.
+template <class T, class Visit>
+class DeviceTracing {
+  public:
+    DeviceTracing(const optics::Lens& lens, const Way& way, const Visit& visit)
+        : lens_(lens), way_(way), along_(way_in<T>(way.along)), visit_(visit), on_failure_(lens, way, visit) {}
+
+    void trace(const GivenRay& given) {
+        constexpr std::size_t kMostRays = 16384;  // whose events are some ten megabytes
+        const auto known = std::ranges::find(wavelengths_nm_, given.wavelength_nm);
+        if (rays_.size() == kMostRays ||
+            (known == wavelengths_nm_.end() && wavelengths_nm_.size() == LensAtWavelengths<T>::kMost)) {
+            finish();
+        }
+        wavelengths_.push_back(static_cast<std::uint16_t>(known - wavelengths_nm_.begin()));
+        if (known == wavelengths_nm_.end()) {
+            wavelengths_nm_.push_back(given.wavelength_nm);
+        }
+        rays_.push_back(given);
+    }
+
+    /// To be called at the end.
+    void finish() {
+        const auto found = way_.device->has_failed() ? std::nullopt : events();
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            if (!found) {
+                on_failure_.trace(rays_[i]);
+                continue;
+            }
+            const optics::TraceLens<T>& lens = at_->at(wavelengths_[i]);
+            RayRows<T, Visit> rows(lens, rays_[i], ray_in(lens, rays_[i], along_.direction), way_, visit_);
+            std::ranges::for_each(found->events(i), std::ref(rows));
+            rows.end(found->end(i));
+        }
+        rays_.clear();
+        wavelengths_.clear();
+        if (wavelengths_nm_.size() == LensAtWavelengths<T>::kMost) {
+            wavelengths_nm_.clear();
+            at_.reset();
+        }
+    }
+
+  private:
+    /// None where the device failed.
+    std::optional<optics::DeviceEvents<T>> events() {
+        try {
+            if (!at_ || at_->wavelengths() != static_cast<int>(wavelengths_nm_.size())) {
+                at_.emplace(optics::at_wavelengths<T>(lens_, wavelengths_nm_));
+                there_.emplace(way_.device->device(), *at_);
+            }
+            std::vector<Ray<T>> rays;
+            for (std::size_t i = 0; i < rays_.size(); ++i) {
+                rays.push_back(ray_in(at_->at(wavelengths_[i]), rays_[i], along_.direction));
+            }
+            return optics::DeviceEvents<T>(way_.device->device(), *there_, rays, wavelengths_, along_);
+        } catch (const DeviceError& error) {
+            way_.device->fail(error.what());
+            return std::nullopt;
+        }
+    }
+
+    const optics::Lens& lens_;
+    const Way& way_;
+    optics::RayWay<T> along_;
+    const Visit& visit_;
+    RayTracing<T, Visit> on_failure_;
+    std::vector<GivenRay> rays_;
+    std::vector<std::uint16_t> wavelengths_;  // a ray each
+    std::vector<double> wavelengths_nm_;
+    std::optional<optics::SpectralLens<T>> at_;
+    std::optional<optics::DeviceLens<T>> there_;
+};
 
 template <class T, class Visit>
-void trace_all(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Way& way,
-               const Visit& visit) {
-    LensAtWavelengths<T> lenses(lens);
-    rays.for_each([&](const GivenRay& given) {
-        const optics::TraceLens<T>& at = lenses.at(given.wavelength_nm);
-        if (options.reverse) {
-            options.no_clip ? trace_one<T, optics::Direction::reverse, optics::Rims::follow>(at, given, way, visit)
-                            : trace_one<T, optics::Direction::reverse, optics::Rims::clip>(at, given, way, visit);
-        } else {
-            options.no_clip ? trace_one<T, optics::Direction::forward, optics::Rims::follow>(at, given, way, visit)
-                            : trace_one<T, optics::Direction::forward, optics::Rims::clip>(at, given, way, visit);
+void trace_all(const optics::Lens& lens, const GivenRays& rays, const Way& way, const Visit& visit) {
+    if constexpr (!std::is_same_v<T, long double>) {  // which no device has
+        if (way.device != nullptr) {
+            DeviceTracing<T, Visit> tracing(lens, way, visit);
+            rays.for_each([&](const GivenRay& given) { tracing.trace(given); });
+            tracing.finish();
+            return;
         }
-    });
+    }
+    RayTracing<T, Visit> tracing(lens, way, visit);
+    rays.for_each([&](const GivenRay& given) { tracing.trace(given); });
 }
 
 /// In the precision asked for.
@@ -221,11 +347,11 @@ template <class Visit>
 void trace_rows(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Way& way,
                 const Visit& visit) {
     if (options.precision == "float") {
-        trace_all<float>(lens, rays, options, way, visit);
+        trace_all<float>(lens, rays, way, visit);
     } else if (options.precision == "extended") {
-        trace_all<long double>(lens, rays, options, way, visit);
+        trace_all<long double>(lens, rays, way, visit);
     } else {
-        trace_all<double>(lens, rays, options, way, visit);
+        trace_all<double>(lens, rays, way, visit);
     }
 }
 
@@ -238,20 +364,17 @@ struct MeasuredError {
     [[nodiscard]] double bound_um() const { return optics::float_error_bound_um(system_length_mm); }
 };
 
-MeasuredError measure_float(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options,
-                            const Way& way) {
-    MeasuredError measured{.reverse = options.reverse,
+MeasuredError measure_float(const optics::Lens& lens, const GivenRays& rays, const optics::RayWay<double>& way) {
+    MeasuredError measured{.reverse = way.direction == optics::Direction::reverse,
                            .system_length_mm = std::abs(lens.image_z - lens.surfaces.front().vertex_z)};
     LensAtWavelengths<float> in_float(lens);
     LensAtWavelengths<double> in_double(lens);
     rays.for_each([&](const GivenRay& given) {
-        const optics::Rims rims = options.no_clip ? optics::Rims::follow : optics::Rims::clip;
-        const optics::Direction direction = options.reverse ? optics::Direction::reverse : optics::Direction::forward;
         const optics::TraceLens<float>& narrow = in_float.at(given.wavelength_nm);
         const optics::TraceLens<double>& wide = in_double.at(given.wavelength_nm);
         measured.error.add(way.reflections.empty()
-                               ? optics::trace_in_float(narrow, wide, given.ray, direction, rims)
-                               : optics::trace_ghost_in_float(narrow, wide, way.reflections, given.ray, rims));
+                               ? optics::trace_in_float(narrow, wide, given.ray, way.direction, way.rims)
+                               : optics::trace_ghost_in_float(narrow, wide, way.reflections, given.ray, way.rims));
     });
     return measured;
 }
@@ -298,10 +421,17 @@ int run_trace(const TraceOptions& options) {
     if (!options.sequence.empty() || options.polarised) {
         optics::require_no_thin_elements(lens, options.polarised ? "polarised light" : "a ghost");
     }
-    Way way{.reflections = {}, .mirrors = {}, .polarised = options.polarised};
+    const std::shared_ptr<SharedDevice> device = shared_device(options.device, OnRefusal::end);
+    Way way{.along = {.direction = options.reverse ? optics::Direction::reverse : optics::Direction::forward,
+                      .rims = options.no_clip ? optics::Rims::follow : optics::Rims::clip},
+            .polarised = options.polarised,
+            .device = device.get()};
     if (!options.sequence.empty()) {
-        way.reflections = parse_sequence(options.sequence, lens, options.mirrors);
-        way.mirrors = stray_mirrors(options.mirrors);
+        way.along.reflections = parse_sequence(options.sequence, lens, options.mirrors);
+        way.along.mirrors = stray_mirrors(options.mirrors);
+    }
+    if (device && options.precision == "extended") {
+        device->refuse("no GPU has extended precision");
     }
     const GivenRays rays(options.rays_file);
     check_rays(lens, rays);
@@ -317,7 +447,7 @@ int run_trace(const TraceOptions& options) {
     }
     Json result{{"lens", lens.id}, {"findings", findings_json(lens.findings)}, {"rows", Json::list()}};
     if (options.precision == "float") {
-        const MeasuredError measured = measure_float(lens, rays, options, way);
+        const MeasuredError measured = measure_float(lens, rays, way.along);
         if (!options.common.quiet) {
             print_error(measured);
         }
@@ -363,6 +493,7 @@ void add_trace_command(Program& program) {
                      "Carry the light's polarisation along each ray: what arrives of unpolarised light, and of light "
                      "polarised across and in the plane of ray and axis");
     add_mirror_options(command, options->mirrors);
+    add_device_option(command, options->device);
     add_common_options(command, options->common);
     command.runs([options] { return run_trace(*options); });
 }
