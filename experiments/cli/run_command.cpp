@@ -15,6 +15,7 @@
 #include "engine/base/json.h"
 #include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/device_option.h"
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/run_parts.h"
@@ -45,6 +46,7 @@ struct RunOptions {
     std::string junit;
     std::string shard;
     std::string quality = "full";
+    std::string device = "cpu";
 };
 
 /// Thrown where a signal asked the run to end.
@@ -206,6 +208,7 @@ int run(const RunOptions& options) {
         .quality = options.quality == "draft" ? findings::Quality::draft : findings::Quality::full,
         .threads = options.common.threads,
         .cache = Cache::standard(),
+        .device = shared_device(options.device, OnRefusal::go_on),
         .steps = runner::steps_kept_in(kept, options.fresh)};
     if (options.lists || options.is_dry) {
         return tell_plan(options, experiment, settings);
@@ -295,6 +298,7 @@ void add_run_command(Program& program) {
         .type_name("i/n")
         .excludes(against)
         .excludes(junit);
+    add_device_option(command, options->device);
     add_common_options(command, options->common);
     command.runs([options] { return run(*options); });
 }

@@ -264,11 +264,11 @@ class DeviceTracing {
 
     void trace(const GivenRay& given) {
         constexpr std::size_t kMostRays = 16384;  // whose events are some ten megabytes
-        const auto known = std::ranges::find(wavelengths_nm_, given.wavelength_nm);
-        if (rays_.size() == kMostRays ||
-            (known == wavelengths_nm_.end() && wavelengths_nm_.size() == LensAtWavelengths<T>::kMost)) {
+        const bool is_new = std::ranges::find(wavelengths_nm_, given.wavelength_nm) == wavelengths_nm_.end();
+        if (rays_.size() == kMostRays || (is_new && wavelengths_nm_.size() == LensAtWavelengths<T>::kMost)) {
             finish();
         }
+        const auto known = std::ranges::find(wavelengths_nm_, given.wavelength_nm);
         wavelengths_.push_back(static_cast<std::uint16_t>(known - wavelengths_nm_.begin()));
         if (known == wavelengths_nm_.end()) {
             wavelengths_nm_.push_back(given.wavelength_nm);

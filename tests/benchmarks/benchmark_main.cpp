@@ -128,6 +128,7 @@ int main(int argc, char** argv) {
     lensproof::register_measure_benchmarks();
     lensproof::register_analysis_benchmarks();
     lensproof::register_ghost_benchmarks();
+    lensproof::register_device_benchmarks();
     lensproof::RatioReporter reporter;
     benchmark::RunSpecifiedBenchmarks(&reporter);
     benchmark::Shutdown();

@@ -50,4 +50,9 @@ void register_analysis_benchmarks();
 /// double-gauss-angenieux has 14 surfaces and a stop.
 void register_ghost_benchmarks();
 
+/// On the GPU, or where there is none, and less of it, on what stands in for one: device/trace/LENS/TYPE/WHAT: four
+/// million rays, each of one of four wavelengths, in its memory already. device/chart/MODEL/…: a chart of 720 × 540
+/// pixels rendered by all processors alone, and with the device's help. Counters: rays, ray-surfaces, samples a second.
+void register_device_benchmarks();
+
 }  // namespace lensproof

@@ -42,7 +42,7 @@ class ColumnTracer<T>::Piece {
         for (std::size_t i = 0; i < kGiven; ++i) {
             send(columns[i], numbers_[i]);
         }
-        with_trace_job<direction>(lens.view(), there(), settings.rims, settings.carry,
+        with_trace_job<direction>(lens.view(), there(), there(), settings.rims, settings.carry,
                                   [&](const auto& job) { buffer_.queue().run(job, static_cast<int>(count_)); });
         for (const DeviceColumn<T>& column : numbers_) {
             buffer_.download(column, count_);

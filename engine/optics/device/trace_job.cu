@@ -1,13 +1,12 @@
-#include "engine/optics/device/trace_job.h"
-
 #include "engine/device/launch.cuh"
+#include "engine/optics/device/trace_job.h"
 
 using namespace lensproof::optics;
 
-#define LENSPROOF_TRACE_JOBS(T, direction, rims)                                           \
-    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::geometry, false>);            \
-    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::transmittance, false>);       \
-    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, false>);                 \
+#define LENSPROOF_TRACE_JOBS(T, direction, rims)                                     \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::geometry, false>);      \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::transmittance, false>); \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, false>);           \
     LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, true>)
 
 LENSPROOF_TRACE_JOBS(float, Direction::forward, Rims::clip);

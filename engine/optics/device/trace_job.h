@@ -7,7 +7,8 @@
 
 namespace lensproof::optics {
 
-/// As `trace_columns`, in columns of the device's memory; those that `carry` does not ask for are not looked at.
+/// As `trace_columns`, from columns of the device's memory to others, or to the same; those that `carry` does not ask
+/// for are not looked at.
 /// `has_specials`: as `trace_through` has it.
 template <class T, Direction direction, Rims rims, Carry carry, bool has_specials>
 struct TraceJob {
@@ -15,6 +16,7 @@ struct TraceJob {
 
     LensView<T> lens;
     RayColumns<T> rays;
+    RayColumns<T> to;
 
     constexpr void operator()(int item) const {
         const auto i = static_cast<std::size_t>(item);
@@ -22,36 +24,37 @@ struct TraceJob {
         const typename LensView<T>::AtWavelength at = lens.at(lens.wavelengths > 1 ? rays.wavelength[i] : 0);
         const TracedRay<T> traced =
             trace_through<direction, rims, has_specials>(at, ray, [](const SurfaceEvent<T>&) {});
-        rays.x[i] = traced.ray.origin.x;
-        rays.y[i] = traced.ray.origin.y;
-        rays.z[i] = traced.ray.origin.z;
-        rays.dx[i] = traced.ray.direction.x;
-        rays.dy[i] = traced.ray.direction.y;
-        rays.dz[i] = traced.ray.direction.z;
+        to.x[i] = traced.ray.origin.x;
+        to.y[i] = traced.ray.origin.y;
+        to.z[i] = traced.ray.origin.z;
+        to.dx[i] = traced.ray.direction.x;
+        to.dy[i] = traced.ray.direction.y;
+        to.dz[i] = traced.ray.direction.z;
         if constexpr (carry != Carry::geometry) {
-            rays.transmittance[i] = traced.transmittance;
+            to.transmittance[i] = traced.transmittance;
         }
         if constexpr (carry == Carry::all) {
-            rays.optical_path[i] = traced.optical_path;
+            to.optical_path[i] = traced.optical_path;
         }
-        rays.status[i] = traced.status;
-        rays.surface[i] = static_cast<std::int16_t>(traced.surface);
+        to.status[i] = traced.status;
+        to.surface[i] = static_cast<std::int16_t>(traced.surface);
     }
 };
 
 /// The job that `settings` ask for, of those that are compiled: lenses with more than spheres carry all, which is the
 /// least of their cost.
 template <Direction direction, class T, class Use>
-void with_trace_job(const LensView<T>& lens, const RayColumns<T>& rays, Rims rims, Carry carry, const Use& use) {
+void with_trace_job(const LensView<T>& lens, const RayColumns<T>& rays, const RayColumns<T>& to, Rims rims, Carry carry,
+                    const Use& use) {
     const auto with_rims = [&]<Rims with>() {
         if (lens.has_more_than_spheres()) {
-            use(TraceJob<T, direction, with, Carry::all, true>{lens, rays});
+            use(TraceJob<T, direction, with, Carry::all, true>{lens, rays, to});
         } else if (carry == Carry::geometry) {
-            use(TraceJob<T, direction, with, Carry::geometry, false>{lens, rays});
+            use(TraceJob<T, direction, with, Carry::geometry, false>{lens, rays, to});
         } else if (carry == Carry::transmittance) {
-            use(TraceJob<T, direction, with, Carry::transmittance, false>{lens, rays});
+            use(TraceJob<T, direction, with, Carry::transmittance, false>{lens, rays, to});
         } else {
-            use(TraceJob<T, direction, with, Carry::all, false>{lens, rays});
+            use(TraceJob<T, direction, with, Carry::all, false>{lens, rays, to});
         }
     };
     rims == Rims::clip ? with_rims.template operator()<Rims::clip>() : with_rims.template operator()<Rims::follow>();

@@ -221,7 +221,8 @@ findings::StepInput measured_input(const Simulation& simulation, const findings:
 }
 
 render::Camera camera_of(const Simulation& simulation, const findings::RunSettings& settings) {
-    return {simulation.scene.camera, simulation.scene.spectral, render::PixelFilter{}, settings.cache};
+    return {simulation.scene.camera, simulation.scene.spectral, render::PixelFilter{}, settings.cache, false,
+            settings.device};
 }
 
 formats::Image rendered(const Simulation& simulation, const render::Camera& camera, const SimulatedPicture& picture,

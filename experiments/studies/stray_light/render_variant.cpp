@@ -167,7 +167,7 @@ class VariantSteps {
         return settings_.steps.step(kGrowth, growth_input(), [&] {
             progress_(name_of("loading"), 0.0);
             render::PreparedScene small(render::coarser(setup_, kGrowthShrinks, 1), render::PixelFilter{},
-                                        settings_.cache, integrators(), scene_.stray_filter);
+                                        settings_.cache, integrators(), scene_.stray_filter, settings_.device);
             return picture_growth(small.render(scene_.passes, settings_.seed, false, !is_draft()),
                                   scene_.growth_samples, settings_.threads,
                                   [&](double done) { progress_(name_of("growth"), done); });
@@ -288,7 +288,7 @@ class VariantSteps {
         if (!prepared_) {
             progress_(name_of("loading"), 0.0);
             prepared_ = std::make_unique<render::PreparedScene>(setup_, render::PixelFilter{}, settings_.cache,
-                                                                integrators(), scene_.stray_filter);
+                                                                integrators(), scene_.stray_filter, settings_.device);
         }
         return *prepared_;
     }
@@ -317,7 +317,8 @@ class VariantSteps {
                      .mirrors = setup_.camera.mirrors,
                      .image_radius = 0.5 * sensor.pixel_pitch_mm * std::hypot(sensor.width, sensor.height),
                      .sampling = {.seed = settings_.seed},
-                     .threads = settings_.threads});
+                     .threads = settings_.threads,
+                     .device = settings_.device});
         std::vector<GhostEnergy> found;
         for (const analysis::Ghost& ghost : survey.ghosts) {
             GhostEnergy energy{.surfaces = {}, .energy = {ghost.light.energy, ghost.light.standard_error}};

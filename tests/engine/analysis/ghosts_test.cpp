@@ -13,6 +13,7 @@
 #include "engine/analysis/ghost_orders.h"
 #include "engine/base/angle.h"
 #include "engine/formats/prescription/load_lens.h"
+#include "tests/engine/every_device.h"
 
 namespace lensproof::analysis::ghosts_test {
 
@@ -410,6 +411,58 @@ TEST(Ghosts, AreTheSameForAnyNumberOfThreads) {
     }
     for (std::size_t i = 0; i < one.surfaces.size(); ++i) {
         EXPECT_EQ(one.surfaces[i].perfect, three.surfaces[i].perfect);
+    }
+}
+
+/// All that tells surveys apart.
+std::vector<double> numbers_of(const GhostSurvey& survey) {
+    std::vector<double> numbers;
+    for (const Ghost& ghost : survey.ghosts) {
+        const GhostLight& light = ghost.light;
+        for (const double number :
+             {light.energy, light.standard_error, light.centroid.x, light.rms_radius, light.peak, 1.0 * light.landed}) {
+            numbers.push_back(number);
+        }
+    }
+    for (const SurfaceShare& share : survey.surfaces) {
+        numbers.push_back(share.perfect);
+    }
+    return numbers;
+}
+
+// Blades that mirror, a sensor that does, a turned group: whatever rays meet, a device finds the same numbers. (Bare
+// glass: a GPU's sines, which layers take, are not this machine's.)
+TEST(Ghosts, AreTheSameOnADevice) {
+    for (const char* name : {"tessar", "heliar-tronnier"}) {
+        const optics::Lens lens = formats::load_lens(name, {.coatings = {"none"}});
+        GhostSettings settings = settings_for(lens, 8.0);
+        settings.mirrors = {.sensor = 0.1, .blades = 0.05};
+        settings.sampling.rays = 2000;
+        settings.threads = 2;
+        const std::vector<double> expected = numbers_of(survey_ghosts(lens, settings));
+        EXPECT_GT(expected.size(), 100U);
+        for (const Device& device : every_device()) {
+            const auto fail = [](const std::string& why) { ADD_FAILURE() << why; };
+            settings.device = std::make_shared<SharedDevice>(device, fail, fail);
+            EXPECT_EQ(numbers_of(survey_ghosts(lens, settings)), expected) << name << ", " << device.name();
+        }
+    }
+}
+
+TEST(Ghosts, AreTheSameWhereADeviceFails) {
+    const optics::Lens lens = formats::load_lens("tessar");
+    GhostSettings settings = settings_for(lens, 8.0);
+    settings.sampling.rays = 500;
+    settings.threads = 2;
+    const std::vector<double> expected = numbers_of(survey_ghosts(lens, settings));
+    int told = 1;
+    for (int calls = 0; told > 0; calls += 5 + 4 * calls) {
+        told = 0;
+        settings.device = std::make_shared<SharedDevice>(Device::stand_in(calls), SharedDevice::Hear(),
+                                                         [&](const std::string& /*why*/) { ++told; });
+        EXPECT_EQ(numbers_of(survey_ghosts(lens, settings)), expected) << calls;
+        EXPECT_LE(told, 1);
+        ASSERT_LT(calls, 10000000);
     }
 }
 
