@@ -15,22 +15,22 @@ optics::SpectralLens<double> at_one(const optics::TraceLens<double>& lens) {
 }
 
 std::size_t bytes_of_rays(const optics::GhostPath& path, std::span<const Vec2d> offsets) {
-    return DeviceBuffer::bytes_for<int>(path.size()) + DeviceBuffer::bytes_for<Vec2d>(offsets.size());
+    return device::Buffer::bytes_for<int>(path.size()) + device::Buffer::bytes_for<Vec2d>(offsets.size());
 }
 
 }  // namespace
 
-GhostDevice::GhostDevice(std::shared_ptr<SharedDevice> device, const optics::TraceLens<double>& lens)
+GhostDevice::GhostDevice(std::shared_ptr<device::SharedDevice> device, const optics::TraceLens<double>& lens)
     : device_(std::move(device)), lens_(device_->device(), at_one(lens)) {}
 
 template <class Use>
 auto GhostDevice::with_buffer(std::size_t bytes, const Use& use)
-    -> std::optional<decltype(use(std::declval<DeviceBuffer&>()))> {
+    -> std::optional<decltype(use(std::declval<device::Buffer&>()))> {
     if (device_->has_failed()) {
         return std::nullopt;
     }
     try {
-        std::unique_ptr<DeviceBuffer> buffer;
+        std::unique_ptr<device::Buffer> buffer;
         {
             const std::scoped_lock lock(mutex_);
             if (!idle_.empty()) {
@@ -39,23 +39,23 @@ auto GhostDevice::with_buffer(std::size_t bytes, const Use& use)
             }
         }
         if (!buffer || buffer->bytes() < bytes) {
-            buffer = std::make_unique<DeviceBuffer>(device_->device(), std::bit_ceil(bytes));
+            buffer = std::make_unique<device::Buffer>(device_->device(), std::bit_ceil(bytes));
         }
         buffer->clear();
         auto result = use(*buffer);
         const std::scoped_lock lock(mutex_);
         idle_.push_back(std::move(buffer));
         return result;
-    } catch (const DeviceError& error) {
+    } catch (const device::Error& error) {
         device_->fail(error.what());
         return std::nullopt;
     }
 }
 
 GhostRays GhostDevice::rays(const GhostScene& scene, const optics::GhostPath& path, std::span<const Vec2d> offsets,
-                            DeviceBuffer& buffer) const {
+                            device::Buffer& buffer) const {
     const auto sent = [&]<class Item>(std::span<const Item> items) {
-        const DeviceColumn<Item> column = buffer.column<Item>(items.size());
+        const device::Column<Item> column = buffer.column<Item>(items.size());
         std::ranges::copy(items, column.here);
         buffer.upload(column, items.size());
         return column.there;
@@ -72,8 +72,8 @@ std::optional<std::vector<std::optional<Landing>>> GhostDevice::landings(const G
                                                                          const optics::GhostPath& path,
                                                                          std::span<const Vec2d> offsets) {
     const std::size_t size = offsets.size();
-    const std::size_t bytes = bytes_of_rays(path, offsets) + DeviceBuffer::bytes_for<Landing, std::uint8_t>(size);
-    return with_buffer(bytes, [&](DeviceBuffer& buffer) {
+    const std::size_t bytes = bytes_of_rays(path, offsets) + device::Buffer::bytes_for<Landing, std::uint8_t>(size);
+    return with_buffer(bytes, [&](device::Buffer& buffer) {
         const auto landings = buffer.column<Landing>(size);
         const auto lands = buffer.column<std::uint8_t>(size);
         buffer.queue().run(LandingJob{{rays(scene, path, offsets, buffer)}, landings.there, lands.there},
@@ -96,9 +96,9 @@ std::optional<std::vector<LandingMargins>> GhostDevice::margins(const GhostScene
     const std::size_t size = offsets.size();
     // A margin an event, and that of the image circle: n reflections cross the lens n + 1 times.
     const std::size_t most = (path.size() + 1) * scene.lens.surfaces.size() + 1;
-    const std::size_t bytes = bytes_of_rays(path, offsets) + DeviceBuffer::bytes_for<double>(size * most) +
-                              DeviceBuffer::bytes_for<std::int32_t, std::uint8_t>(size);
-    return with_buffer(bytes, [&](DeviceBuffer& buffer) {
+    const std::size_t bytes = bytes_of_rays(path, offsets) + device::Buffer::bytes_for<double>(size * most) +
+                              device::Buffer::bytes_for<std::int32_t, std::uint8_t>(size);
+    return with_buffer(bytes, [&](device::Buffer& buffer) {
         const auto margins = buffer.column<double>(size * most);
         const auto counts = buffer.column<std::int32_t>(size);
         const auto arrives = buffer.column<std::uint8_t>(size);
@@ -124,8 +124,8 @@ std::optional<std::vector<LandingMargins>> GhostDevice::margins(const GhostScene
 std::optional<std::vector<RimRay>> GhostDevice::rim_rays(const GhostScene& scene, const optics::GhostPath& path,
                                                          std::span<const Vec2d> offsets) {
     const std::size_t size = offsets.size();
-    const std::size_t bytes = bytes_of_rays(path, offsets) + DeviceBuffer::bytes_for<RimRay>(size);
-    return with_buffer(bytes, [&](DeviceBuffer& buffer) {
+    const std::size_t bytes = bytes_of_rays(path, offsets) + device::Buffer::bytes_for<RimRay>(size);
+    return with_buffer(bytes, [&](device::Buffer& buffer) {
         const auto found = buffer.column<RimRay>(size);
         buffer.queue().run(RimRayJob{{rays(scene, path, offsets, buffer)}, found.there}, static_cast<int>(size));
         buffer.download(found, size);

@@ -20,8 +20,8 @@ struct GhostRays;  // ghost_job.h
 /// coatings let pass: nothing where the device fails. For any number of threads.
 class GhostDevice {
   public:
-    /// Throws DeviceError where the lens does not fit.
-    GhostDevice(std::shared_ptr<SharedDevice> device, const optics::TraceLens<double>& lens);
+    /// Throws device::Error where the lens does not fit.
+    GhostDevice(std::shared_ptr<device::SharedDevice> device, const optics::TraceLens<double>& lens);
 
     std::optional<std::vector<std::optional<Landing>>> landings(const GhostScene& scene, const optics::GhostPath& path,
                                                                 std::span<const Vec2d> offsets);
@@ -33,15 +33,16 @@ class GhostDevice {
   private:
     /// use(buffer), of a buffer of at least so many bytes that nobody else uses; nothing where the device fails.
     template <class Use>
-    auto with_buffer(std::size_t bytes, const Use& use) -> std::optional<decltype(use(std::declval<DeviceBuffer&>()))>;
+    auto with_buffer(std::size_t bytes, const Use& use)
+        -> std::optional<decltype(use(std::declval<device::Buffer&>()))>;
     /// What jobs are told, sent on its way.
     [[nodiscard]] GhostRays rays(const GhostScene& scene, const optics::GhostPath& path, std::span<const Vec2d> offsets,
-                                 DeviceBuffer& buffer) const;
+                                 device::Buffer& buffer) const;
 
-    std::shared_ptr<SharedDevice> device_;
+    std::shared_ptr<device::SharedDevice> device_;
     optics::DeviceLens<double> lens_;
     std::mutex mutex_;
-    std::vector<std::unique_ptr<DeviceBuffer>> idle_;
+    std::vector<std::unique_ptr<device::Buffer>> idle_;
 };
 
 }  // namespace lensproof::analysis

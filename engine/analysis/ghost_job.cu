@@ -1,5 +1,4 @@
 #include "engine/analysis/ghost_job.h"
-
 #include "engine/device/launch.cuh"
 
 LENSPROOF_DEVICE_JOB(lensproof::analysis::LandingJob);

@@ -164,13 +164,13 @@ std::vector<SurfaceShare> surface_shares(const GhostScene& scene, const GhostSur
 }
 
 std::shared_ptr<GhostDevice> ghost_device(const optics::TraceLens<double>& lens,
-                                          const std::shared_ptr<SharedDevice>& device) {
+                                          const std::shared_ptr<device::SharedDevice>& device) {
     if (!device || device->has_failed()) {
         return nullptr;
     }
     try {
         return std::make_shared<GhostDevice>(device, lens);
-    } catch (const DeviceError& error) {
+    } catch (const device::Error& error) {
         device->fail(error.what());
         return nullptr;
     }

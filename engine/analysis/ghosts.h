@@ -26,7 +26,7 @@ struct GhostSettings {
     double image_radius = 0.0;  // mm
     GhostSampling sampling;
     int threads = 0;
-    std::shared_ptr<SharedDevice> device{};  // that traces rays, or null
+    std::shared_ptr<device::SharedDevice> device{};  // that traces rays, or null
 };
 
 /// A ghost; energies as in GhostLight.

@@ -4,12 +4,12 @@
 
 namespace lensproof {
 
-/// An index; of a Pack one for each lane (pack.h).
+/// An index into tables.
 template <class T>
-class Index {
+class NumberIndex {
   public:
     /// From whole numbers; of others the whole part.
-    constexpr explicit Index(const T& number) : at_(static_cast<std::int32_t>(number)) {}
+    constexpr explicit NumberIndex(const T& number) : at_(static_cast<std::int32_t>(number)) {}
 
     template <class Entry>
     [[nodiscard]] constexpr T look_up(const Entry* table) const {
@@ -19,6 +19,26 @@ class Index {
   private:
     std::int32_t at_;
 };
+
+namespace look_up_detail {
+
+template <class T>
+struct IndexOf {
+    using Type = NumberIndex<T>;
+};
+template <class T>
+requires requires {
+    typename T::Index;
+}
+struct IndexOf<T> {
+    using Type = typename T::Index;
+};
+
+}  // namespace look_up_detail
+
+/// That of a number, or of a Pack's lanes, an index each.
+template <class T>
+using Index = typename look_up_detail::IndexOf<T>::Type;
 
 /// table[index], where the index is the whole part of a number.
 template <class T, class Entry>

@@ -75,8 +75,8 @@ class Pack {
     }
 
     /// table[index[lane]] for each lane.
-    template <class Entry, class Index>
-    static Pack gather(const Entry* table, const Index* index) {
+    template <class Entry, class Number>
+    static Pack gather(const Entry* table, const Number* index) {
         return Pack(gathered<Lanes>(table, index));
     }
 
@@ -105,22 +105,22 @@ class Pack {
         return chosen;
     }
 
+    /// An index a lane (look_up.h).
+    class Index {
+      public:
+        explicit Index(const Pack& number) { number.store(at_.data()); }
+
+        template <class Entry>
+        [[nodiscard]] Pack look_up(const Entry* table) const {
+            return gather(table, at_.data());
+        }
+
+      private:
+        alignas(64) std::array<std::int32_t, kLanes> at_;
+    };
+
   private:
     Lanes lanes_{};
-};
-
-template <class Scalar, class Abi>
-class Index<Pack<Scalar, Abi>> {
-  public:
-    explicit Index(const Pack<Scalar, Abi>& number) { number.store(at_.data()); }
-
-    template <class Entry>
-    [[nodiscard]] Pack<Scalar, Abi> look_up(const Entry* table) const {
-        return Pack<Scalar, Abi>::gather(table, at_.data());
-    }
-
-  private:
-    alignas(64) std::array<std::int32_t, Pack<Scalar, Abi>::kLanes> at_;
 };
 
 }  // namespace lensproof

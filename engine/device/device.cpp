@@ -10,7 +10,7 @@
 #include <cuda_runtime_api.h>
 #endif
 
-namespace lensproof {
+namespace lensproof::device {
 
 struct Device::State {
     std::string name;
@@ -22,7 +22,7 @@ struct Device::State {
     void count_call() {
         const int before = calls.fetch_add(1);
         if (fails_after && before >= *fails_after) {
-            throw DeviceError(fmt::format("{}: failed as it was asked to", name));
+            throw Error(fmt::format("{}: failed as it was asked to", name));
         }
     }
 };
@@ -32,7 +32,7 @@ namespace {
 #ifdef LENSPROOF_CUDA
 void check(cudaError_t status, const char* what) {
     if (status != cudaSuccess) {
-        throw DeviceError(fmt::format("{}: {}", what, cudaGetErrorString(status)));
+        throw Error(fmt::format("{}: {}", what, cudaGetErrorString(status)));
     }
 }
 #endif
@@ -100,18 +100,6 @@ bool Device::is_gpu() const {
     return state_->is_gpu;
 }
 
-std::size_t Device::free_bytes() const {
-#ifdef LENSPROOF_CUDA
-    if (is_gpu()) {
-        std::size_t free = 0;
-        std::size_t total = 0;
-        check(cudaMemGetInfo(&free, &total), "a GPU's memory");
-        return free;
-    }
-#endif
-    return std::size_t{1} << 30U;
-}
-
 Device::Queue::Queue(const Device& device) : stream_(std::make_shared<Stream>(device.state_)) {}
 
 void* Device::Queue::stream_or_none() {
@@ -157,7 +145,7 @@ void Device::Queue::wait() {
 #endif
 }
 
-DeviceMemory::DeviceMemory(const Device& device, Place place, std::size_t bytes) {
+Memory::Memory(const Device& device, Place place, std::size_t bytes) {
 #ifdef LENSPROOF_CUDA
     if (device.is_gpu()) {
         void* made = nullptr;
@@ -178,4 +166,4 @@ DeviceMemory::DeviceMemory(const Device& device, Place place, std::size_t bytes)
     memory_ = {::operator new(bytes, kLine), [](void* memory) { ::operator delete(memory, kLine); }};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::device

@@ -16,10 +16,10 @@
 #include <type_traits>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::device {
 
 /// A call to the device that failed, or memory that it has not.
-class DeviceError : public std::runtime_error {
+class Error : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
@@ -34,22 +34,20 @@ class Device {
     struct Found;
     static Found find();
 
-    /// This machine's processors, one of them at a time, with memory of their own. Of `fails_after` calls and on each
-    /// ends with DeviceError (none: no call): so that tests see what becomes of a device that fails.
+    /// Whoever calls it, with memory of its own: for tests, and to try what a GPU would do. After `fails_after` calls
+    /// each ends with Error; nothing: none does.
     static Device stand_in(std::optional<int> fails_after = std::nullopt);
 
     [[nodiscard]] const std::string& name() const;
     [[nodiscard]] bool is_gpu() const;
-    /// Of its memory.
-    [[nodiscard]] std::size_t free_bytes() const;
 
     /// Work that is done in its order; queues go side by side. For one thread at a time.
     class Queue {
       public:
         explicit Queue(const Device& device);
 
-        /// `bytes` from this machine's memory to the device's, and back. Memory that is not a PinnedArray's holds the
-        /// caller up.
+        /// `bytes` from this machine's memory to the device's, and back. Memory that is not pinned holds the caller
+        /// up.
         void upload(void* to, const void* from, std::size_t bytes);
         void download(void* to, const void* from, std::size_t bytes);
 
@@ -65,7 +63,7 @@ class Device {
             }
         }
 
-        /// Until all that was asked for is done. Throws DeviceError where any of it failed.
+        /// Until all that was asked for is done. Throws Error where any of it failed.
         void wait();
 
       private:
@@ -86,7 +84,7 @@ class Device {
     };
 
   private:
-    friend class DeviceMemory;
+    friend class Memory;
     struct State;
     explicit Device(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
@@ -98,12 +96,12 @@ struct Device::Found {
     std::string why_not;  // "this build has no CUDA", "no CUDA-capable device is detected"
 };
 
-/// Bytes on a device, or of this machine that the device reaches at its full speed. Throws DeviceError where there are
+/// Bytes on a device, or of this machine that the device reaches at its full speed. Throws Error where there are
 /// not so many.
-class DeviceMemory {
+class Memory {
   public:
     enum class Place { device, pinned };
-    DeviceMemory(const Device& device, Place place, std::size_t bytes);
+    Memory(const Device& device, Place place, std::size_t bytes);
 
     [[nodiscard]] void* get() const { return memory_.get(); }
 
@@ -111,4 +109,4 @@ class DeviceMemory {
     std::shared_ptr<void> memory_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::device

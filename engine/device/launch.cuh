@@ -4,7 +4,7 @@
 
 #include "engine/device/device.h"
 
-namespace lensproof {
+namespace lensproof::device {
 
 namespace launch_detail {
 
@@ -26,11 +26,11 @@ void launch_on_gpu(const Job& job, int count, void* stream) {
     const int blocks = (count + Job::kThreadsPerBlock - 1) / Job::kThreadsPerBlock;
     launch_detail::run_items<Job><<<blocks, Job::kThreadsPerBlock, 0, static_cast<cudaStream_t>(stream)>>>(job, count);
     if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess) {
-        throw DeviceError(std::string("a GPU's loop: ") + cudaGetErrorString(status));
+        throw Error(std::string("a GPU's loop: ") + cudaGetErrorString(status));
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::device
 
 /// Compiles the loop of one job.
-#define LENSPROOF_DEVICE_JOB(...) template void lensproof::launch_on_gpu(const __VA_ARGS__&, int, void*)
+#define LENSPROOF_DEVICE_JOB(...) template void lensproof::device::launch_on_gpu(const __VA_ARGS__&, int, void*)

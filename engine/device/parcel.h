@@ -9,7 +9,7 @@
 
 #include "engine/device/device_buffer.h"
 
-namespace lensproof {
+namespace lensproof::device {
 
 /// An array's place in a Parcel.
 template <class T>
@@ -47,7 +47,7 @@ class Parcel {
         }
     }
 
-    void allocate(const Device& device) { memory_.emplace(device, DeviceMemory::Place::device, bytes_.size() + 1); }
+    void allocate(const Device& device) { memory_.emplace(device, Memory::Place::device, bytes_.size() + 1); }
 
     /// On the device; this outlives it.
     template <class T>
@@ -69,7 +69,7 @@ class Parcel {
 
   private:
     std::vector<std::byte> bytes_;
-    std::optional<DeviceMemory> memory_;
+    std::optional<Memory> memory_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::device

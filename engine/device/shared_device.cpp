@@ -1,6 +1,6 @@
 #include "engine/device/shared_device.h"
 
-namespace lensproof {
+namespace lensproof::device {
 
 void SharedDevice::refuse(const std::string& why) {
     const std::scoped_lock lock(mutex_);
@@ -15,4 +15,4 @@ void SharedDevice::fail(const std::string& why) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::device

@@ -9,7 +9,7 @@
 
 #include "engine/device/device.h"
 
-namespace lensproof {
+namespace lensproof::device {
 
 /// Whoever is given one asks it for what it can do, does the rest on the processors, and does there, too, what it
 /// failed at: results are the same. For any number of threads.
@@ -38,4 +38,4 @@ class SharedDevice {
     std::set<std::string> refused_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::device

@@ -20,7 +20,7 @@ struct PupilMapSettings {
     /// more than this fraction of their area. Steps below 1/64 of the radius, where few points lie, may need more.
     double most_excess = 0.005;
     /// That traces rays, or null; the map is the same.
-    SharedDevice* device = nullptr;
+    device::SharedDevice* device = nullptr;
 };
 
 /// Draws paths' first points: for a point of the sensor, points of the pupil through which light may reach it, evenly

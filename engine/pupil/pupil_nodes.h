@@ -31,7 +31,7 @@ struct NodeSearch {
     bool by_radius = true;       // the lens is rotationally symmetric
     double end = 0.0;            // no place has a larger radius
     double most_excess = 0.005;  // as PupilMapSettings has it
-    SharedDevice* device = nullptr;
+    device::SharedDevice* device = nullptr;
 };
 
 /// Lets the full circle pass the stop, which holds what any blades leave.

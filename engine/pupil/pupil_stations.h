@@ -36,7 +36,7 @@ class PupilStations {
   public:
     /// `device`: that traces, or null. All outlive this.
     PupilStations(const std::vector<optics::TraceLens<double>>& band, const RayFamily& rays, const Disc& disc,
-                  PupilSymmetry symmetry, SharedDevice* device)
+                  PupilSymmetry symmetry, device::SharedDevice* device)
         : band_(band), lens_(band), tracer_(lens_, device), rays_(rays), disc_(disc), symmetry_(symmetry) {}
     PupilStations(const PupilStations&) = delete;  // the tracer refers to the lens
     PupilStations& operator=(const PupilStations&) = delete;

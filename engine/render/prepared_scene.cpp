@@ -13,7 +13,7 @@ namespace lensproof::render {
 
 PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
                              PassIntegrators integrators, const std::optional<PixelFilter>& stray_filter,
-                             std::shared_ptr<SharedDevice> device)
+                             std::shared_ptr<device::SharedDevice> device)
     : setup_(setup),
       filter_(filter),
       stray_filter_(stray_filter.value_or(filter)),

@@ -24,7 +24,7 @@ class PreparedScene {
     /// Throws InputError as `Camera` and `build_scene` do.
     PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
                   PassIntegrators integrators = {}, const std::optional<PixelFilter>& stray_filter = {},
-                  std::shared_ptr<SharedDevice> device = nullptr);
+                  std::shared_ptr<device::SharedDevice> device = nullptr);
     PreparedScene(const PreparedScene&) = delete;
     PreparedScene& operator=(const PreparedScene&) = delete;
 

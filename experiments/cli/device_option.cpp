@@ -11,14 +11,14 @@ namespace lensproof::cli {
 
 namespace {
 
-std::optional<Device> device_of(const std::string& wish) {
+std::optional<device::Device> device_of(const std::string& wish) {
     if (wish == "cpu") {
         return std::nullopt;
     }
     if (wish == "stand-in") {
-        return Device::stand_in();
+        return device::Device::stand_in();
     }
-    Device::Found found = Device::find();
+    device::Device::Found found = device::Device::find();
     if (!found.device && wish == "cuda") {
         throw InputError(fmt::format("--device is \"cuda\", but {}", found.why_not));
     }
@@ -39,13 +39,13 @@ void add_device_option(Command& command, std::string& wish) {
         .shows_default();
 }
 
-std::shared_ptr<SharedDevice> shared_device(const std::string& wish, OnRefusal on_refusal) {
-    const std::optional<Device> device = device_of(wish);
+std::shared_ptr<device::SharedDevice> shared_device(const std::string& wish, OnRefusal on_refusal) {
+    const std::optional<device::Device> device = device_of(wish);
     if (!device) {
         return nullptr;
     }
     const bool ends = wish == "cuda" && on_refusal == OnRefusal::end;
-    return std::make_shared<SharedDevice>(
+    return std::make_shared<device::SharedDevice>(
         *device,
         [ends](const std::string& why) {
             if (ends) {

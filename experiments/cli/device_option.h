@@ -19,6 +19,6 @@ enum class OnRefusal {
 
 /// The device that is wished for; null: the processors. Of `auto` where there is none, and of whatever it cannot do or
 /// fails at, a line on standard error says why. Throws InputError for `cuda` where there is none.
-std::shared_ptr<SharedDevice> shared_device(const std::string& wish, OnRefusal on_refusal);
+std::shared_ptr<device::SharedDevice> shared_device(const std::string& wish, OnRefusal on_refusal);
 
 }  // namespace lensproof::cli

@@ -152,7 +152,7 @@ studies::Plan take_plan(const RenderJobOptions& options, RenderWishes& wishes, r
 
 int run_render(const RenderJobOptions& options, RenderWishes wishes) {
     const RenderFiles files = render_files(options);  // before long work
-    const std::shared_ptr<SharedDevice> device = shared_device(wishes.device, OnRefusal::end);
+    const std::shared_ptr<device::SharedDevice> device = shared_device(wishes.device, OnRefusal::end);
     check_passes(wishes.passes, options);
     if ((wishes.model == "auto") == wishes.tolerance.empty()) {
         throw InputError("--model auto and --tolerance go together, expected both or neither");

@@ -56,8 +56,8 @@ struct TraceOptions {
 /// How rays are traced.
 struct Way {
     optics::RayWay<double> along;
-    bool polarised = false;          // rows say what becomes of polarised light too
-    SharedDevice* device = nullptr;  // that traces, or null
+    bool polarised = false;                  // rows say what becomes of polarised light too
+    device::SharedDevice* device = nullptr;  // that traces, or null
 };
 
 // Far beyond any scene, far below what would overflow when squared, in a float too.
@@ -310,7 +310,7 @@ class DeviceTracing {
                 rays.push_back(ray_in(at_->at(wavelengths_[i]), rays_[i], along_.direction));
             }
             return optics::DeviceEvents<T>(way_.device->device(), *there_, rays, wavelengths_, along_);
-        } catch (const DeviceError& error) {
+        } catch (const device::Error& error) {
             way_.device->fail(error.what());
             return std::nullopt;
         }
@@ -421,7 +421,7 @@ int run_trace(const TraceOptions& options) {
     if (!options.sequence.empty() || options.polarised) {
         optics::require_no_thin_elements(lens, options.polarised ? "polarised light" : "a ghost");
     }
-    const std::shared_ptr<SharedDevice> device = shared_device(options.device, OnRefusal::end);
+    const std::shared_ptr<device::SharedDevice> device = shared_device(options.device, OnRefusal::end);
     Way way{.along = {.direction = options.reverse ? optics::Direction::reverse : optics::Direction::forward,
                       .rims = options.no_clip ? optics::Rims::follow : optics::Rims::clip},
             .polarised = options.polarised,

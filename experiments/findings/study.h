@@ -27,11 +27,11 @@ inline constexpr int kDraftSamplesOver = 16;
 struct RunSettings {
     std::uint64_t seed = 0;
     Quality quality = Quality::full;
-    int threads = 0;                         // 0: as many as the machine has
-    Cache cache{};                           // for what is found by tracing lenses
-    std::shared_ptr<SharedDevice> device{};  // that traces rays for pictures, or null
-    bool self_test = true;                   // each measurement says its own floor (calibration/self_test/self_test.h)
-    Steps steps{};                           // what takes long is done as one of these
+    int threads = 0;                                 // 0: as many as the machine has
+    Cache cache{};                                   // for what is found by tracing lenses
+    std::shared_ptr<device::SharedDevice> device{};  // that traces rays for pictures, or null
+    bool self_test = true;  // each measurement says its own floor (calibration/self_test/self_test.h)
+    Steps steps{};          // what takes long is done as one of these
 };
 
 /// Carries a study out. The same settings give the same findings, whatever the number of threads; `before` are those of

@@ -18,7 +18,7 @@ namespace lensproof {
 namespace {
 
 /// Enough for a GPU to be full most of the time; to the stand-in, few.
-std::size_t rays_for(const Device& device) {
+std::size_t rays_for(const device::Device& device) {
     return std::size_t{1} << (device.is_gpu() ? 22U : 10U);
 }
 
@@ -41,17 +41,17 @@ std::vector<Ray<T>> passing_rays(const optics::TraceLens<double>& lens, double s
 
 /// The loop alone: rays and results stay in the device's memory.
 template <class T>
-void time_loop(benchmark::State& state, const Device& device, const std::string& name, optics::Carry carry) {
+void time_loop(benchmark::State& state, const device::Device& device, const std::string& name, optics::Carry carry) {
     const std::size_t size = rays_for(device);
     const optics::Lens lens = formats::load_lens(name);
     const auto at = optics::at_wavelengths<T>(lens, {450.0, 500.0, 550.0, 600.0});
     const optics::DeviceLens<T> there(device, at);
     const std::vector<Ray<T>> passing =
         passing_rays<T>(optics::at_wavelength<double>(lens, 550.0), lens.surfaces.front().semi_diameter);
-    DeviceBuffer buffer(device, 14 * DeviceBuffer::bytes_for<T>(size) +
-                                    DeviceBuffer::bytes_for<std::uint16_t, optics::RayStatus, std::int16_t>(size));
-    std::array<DeviceColumn<T>, 14> numbers;
-    for (DeviceColumn<T>& column : numbers) {
+    device::Buffer buffer(device, 14 * device::Buffer::bytes_for<T>(size) +
+                                      device::Buffer::bytes_for<std::uint16_t, optics::RayStatus, std::int16_t>(size));
+    std::array<device::Column<T>, 14> numbers;
+    for (device::Column<T>& column : numbers) {
         column = buffer.column<T>(size);
     }
     const auto wavelength = buffer.column<std::uint16_t>(size);
@@ -101,7 +101,7 @@ void time_loop(benchmark::State& state, const Device& device, const std::string&
 }
 
 /// A whole render of an evenly lit chart, on all processors, with the device's help or without.
-void time_chart(benchmark::State& state, const std::shared_ptr<SharedDevice>& device, render::LensModel model) {
+void time_chart(benchmark::State& state, const std::shared_ptr<device::SharedDevice>& device, render::LensModel model) {
     const render::Camera camera({.lens = "tessar",
                                  .f_number = 2.8,
                                  .focus_distance_mm = 2000.0,
@@ -120,7 +120,7 @@ void time_chart(benchmark::State& state, const std::shared_ptr<SharedDevice>& de
         benchmark::Counter(static_cast<double>(state.iterations()) * 720 * 540 * samples, benchmark::Counter::kIsRate);
 }
 
-void register_on(const std::shared_ptr<SharedDevice>& device) {
+void register_on(const std::shared_ptr<device::SharedDevice>& device) {
     const auto add = [&]<class T>(const char* lens, const char* type, T /*number*/) {
         for (const auto& [what, carry] :
              {std::pair{"geometry", optics::Carry::geometry}, {"fresnel", optics::Carry::transmittance}}) {
@@ -148,8 +148,9 @@ void register_on(const std::shared_ptr<SharedDevice>& device) {
 }  // namespace
 
 void register_device_benchmarks() {
-    const auto fail = [](const std::string& why) { throw DeviceError(why); };
-    register_on(std::make_shared<SharedDevice>(Device::find().device.value_or(Device::stand_in()), fail, fail));
+    const auto fail = [](const std::string& why) { throw device::Error(why); };
+    register_on(std::make_shared<device::SharedDevice>(
+        device::Device::find().device.value_or(device::Device::stand_in()), fail, fail));
 }
 
 }  // namespace lensproof

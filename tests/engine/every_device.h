@@ -7,9 +7,9 @@
 namespace lensproof {
 
 /// The stand-in, and this machine's GPU where it has one.
-inline std::vector<Device> every_device() {
-    std::vector<Device> devices = {Device::stand_in()};
-    if (const Device::Found found = Device::find(); found.device) {
+inline std::vector<device::Device> every_device() {
+    std::vector<device::Device> devices = {device::Device::stand_in()};
+    if (const device::Device::Found found = device::Device::find(); found.device) {
         devices.push_back(*found.device);
     }
     return devices;

@@ -7,13 +7,13 @@ namespace {
 /// Where a special surface's own arrays lie.
 template <class T>
 struct SpecialPlaces {
-    ParcelPlace<TraceLayer<T>> layers;
-    ParcelPlace<StopOpening::Edge> edges;
-    ParcelPlace<float> texture;
+    device::ParcelPlace<TraceLayer<T>> layers;
+    device::ParcelPlace<StopOpening::Edge> edges;
+    device::ParcelPlace<float> texture;
 };
 
 template <class T>
-SpecialPlaces<T> pack_special(Parcel& parcel, const SpecialSurface<T>& special) {
+SpecialPlaces<T> pack_special(device::Parcel& parcel, const SpecialSurface<T>& special) {
     const StopOpening opening = special.mask.opening();
     return {.layers = parcel.add(special.coating.layers),
             .edges = parcel.add(opening.edges),
@@ -21,7 +21,7 @@ SpecialPlaces<T> pack_special(Parcel& parcel, const SpecialSurface<T>& special) 
 }
 
 template <class T>
-typename LensView<T>::Special special_on_device(const Parcel& parcel, const SpecialSurface<T>& from,
+typename LensView<T>::Special special_on_device(const device::Parcel& parcel, const SpecialSurface<T>& from,
                                                 const SpecialPlaces<T>& places) {
     StopOpening mask = from.mask.opening();
     mask.edges = parcel.span(places.edges);
@@ -67,7 +67,7 @@ std::vector<T> attenuation_table(const SpectralLens<T>& lens) {
 }  // namespace
 
 template <class T>
-DeviceLens<T>::DeviceLens(const Device& device, const SpectralLens<T>& lens) {
+DeviceLens<T>::DeviceLens(const device::Device& device, const SpectralLens<T>& lens) {
     const auto surfaces = parcel_.add(lens.at().front().surfaces);
     const auto indices = parcel_.add(index_table(lens));
     const auto attenuation = parcel_.add(attenuation_table(lens));

@@ -6,17 +6,17 @@
 
 namespace lensproof::optics {
 
-/// Throws DeviceError where it does not fit.
+/// Throws device::Error where it does not fit.
 template <class T>
 class DeviceLens {
   public:
-    DeviceLens(const Device& device, const SpectralLens<T>& lens);
+    DeviceLens(const device::Device& device, const SpectralLens<T>& lens);
 
     /// For jobs on that device; this outlives them.
     [[nodiscard]] const LensView<T>& view() const { return view_; }
 
   private:
-    Parcel parcel_;
+    device::Parcel parcel_;
     LensView<T> view_;
 };
 

@@ -12,14 +12,14 @@ namespace lensproof::optics {
 template <class T>
 class ColumnTracer<T>::Piece {
   public:
-    Piece(const Device& device, std::size_t most)
-        : buffer_(device, kNumbers * DeviceBuffer::bytes_for<T>(most) +
-                              DeviceBuffer::bytes_for<std::uint16_t, RayStatus, std::int16_t>(most)),
+    Piece(const device::Device& device, std::size_t most)
+        : buffer_(device, kNumbers * device::Buffer::bytes_for<T>(most) +
+                              device::Buffer::bytes_for<std::uint16_t, RayStatus, std::int16_t>(most)),
           wavelength_(buffer_.column<std::uint16_t>(most)),
           status_(buffer_.column<RayStatus>(most)),
           surface_(buffer_.column<std::int16_t>(most)),
           most_(most) {
-        for (DeviceColumn<T>& column : numbers_) {
+        for (device::Column<T>& column : numbers_) {
             column = buffer_.column<T>(most);
         }
     }
@@ -31,7 +31,7 @@ class ColumnTracer<T>::Piece {
     void start(const DeviceLens<T>& lens, const RayColumns<T>& rays, std::size_t first, const BatchSettings& settings) {
         first_ = first;
         count_ = std::min(most_, static_cast<std::size_t>(rays.size) - first);
-        const auto send = [&]<class Number>(const Number* from, const DeviceColumn<Number>& to) {
+        const auto send = [&]<class Number>(const Number* from, const device::Column<Number>& to) {
             std::copy_n(from + first_, count_, to.here);
             buffer_.upload(to, count_);
         };
@@ -44,7 +44,7 @@ class ColumnTracer<T>::Piece {
         }
         with_trace_job<direction>(lens.view(), there(), there(), settings.rims, settings.carry,
                                   [&](const auto& job) { buffer_.queue().run(job, static_cast<int>(count_)); });
-        for (const DeviceColumn<T>& column : numbers_) {
+        for (const device::Column<T>& column : numbers_) {
             buffer_.download(column, count_);
         }
         buffer_.download(status_, count_);
@@ -99,25 +99,25 @@ class ColumnTracer<T>::Piece {
                 .size = static_cast<int>(count_)};
     }
 
-    DeviceBuffer buffer_;
-    std::array<DeviceColumn<T>, kNumbers> numbers_;
-    DeviceColumn<std::uint16_t> wavelength_;
-    DeviceColumn<RayStatus> status_;
-    DeviceColumn<std::int16_t> surface_;
+    device::Buffer buffer_;
+    std::array<device::Column<T>, kNumbers> numbers_;
+    device::Column<std::uint16_t> wavelength_;
+    device::Column<RayStatus> status_;
+    device::Column<std::int16_t> surface_;
     std::size_t most_;
     std::size_t first_ = 0;
     std::size_t count_ = 0;
 };
 
 template <class T>
-ColumnTracer<T>::ColumnTracer(const SpectralLens<T>& lens, SharedDevice* device, std::size_t piece)
+ColumnTracer<T>::ColumnTracer(const SpectralLens<T>& lens, device::SharedDevice* device, std::size_t piece)
     : lens_(&lens), device_(device), most_(piece) {
     if (device_ == nullptr || device_->has_failed()) {
         return;
     }
     try {
         there_.emplace(device_->device(), lens);
-    } catch (const DeviceError& error) {
+    } catch (const device::Error& error) {
         fall_back(error.what());
     }
 }
@@ -175,7 +175,7 @@ std::size_t ColumnTracer<T>::trace_on_device(const RayColumns<T>& rays, const Ba
         }
         done += pieces_[next]->finish(rays, settings.carry);
         done += pieces_[1 - next]->finish(rays, settings.carry);
-    } catch (const DeviceError& error) {
+    } catch (const device::Error& error) {
         fall_back(error.what());
     }
     return done;
@@ -189,19 +189,19 @@ template void ColumnTracer<double>::trace<Direction::forward>(const RayColumns<d
 template void ColumnTracer<double>::trace<Direction::reverse>(const RayColumns<double>&, const BatchSettings&);
 
 template <class T>
-DeviceEvents<T>::DeviceEvents(const Device& device, const DeviceLens<T>& lens, std::span<const Ray<T>> rays,
+DeviceEvents<T>::DeviceEvents(const device::Device& device, const DeviceLens<T>& lens, std::span<const Ray<T>> rays,
                               std::span<const std::uint16_t> wavelengths, const RayWay<T>& way)
     // A ghost of n reflections crosses the lens n + 1 times, and meets the sensor at most n times.
     : most_events_((way.reflections.size() + 1) * static_cast<std::size_t>(lens.view().surface_count) +
                    way.reflections.size()),
-      buffer_(device, DeviceBuffer::bytes_for<SurfaceEvent<T>>(rays.size() * most_events_) +
-                          DeviceBuffer::bytes_for<Ray<T>, std::uint16_t, std::int32_t, TracedRay<T>>(rays.size()) +
-                          DeviceBuffer::bytes_for<int>(way.reflections.size())),
+      buffer_(device, device::Buffer::bytes_for<SurfaceEvent<T>>(rays.size() * most_events_) +
+                          device::Buffer::bytes_for<Ray<T>, std::uint16_t, std::int32_t, TracedRay<T>>(rays.size()) +
+                          device::Buffer::bytes_for<int>(way.reflections.size())),
       events_(buffer_.column<SurfaceEvent<T>>(rays.size() * most_events_)),
       counts_(buffer_.column<std::int32_t>(rays.size())),
       ends_(buffer_.column<TracedRay<T>>(rays.size())) {
     const auto sent = [&]<class Item>(std::span<const Item> items) {
-        const DeviceColumn<Item> column = buffer_.column<Item>(items.size());
+        const device::Column<Item> column = buffer_.column<Item>(items.size());
         std::ranges::copy(items, column.here);
         buffer_.upload(column, items.size());
         return column.there;

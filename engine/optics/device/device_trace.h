@@ -24,7 +24,7 @@ class ColumnTracer {
     static constexpr std::size_t kUsualPiece = std::size_t{1} << 18U;
 
     /// `device`: null will do. Both outlive this. `piece`: a power of two, of 16 or more.
-    ColumnTracer(const SpectralLens<T>& lens, SharedDevice* device, std::size_t piece = kUsualPiece);
+    ColumnTracer(const SpectralLens<T>& lens, device::SharedDevice* device, std::size_t piece = kUsualPiece);
     ColumnTracer(ColumnTracer&&) noexcept;
     ColumnTracer& operator=(ColumnTracer&&) noexcept;
     ~ColumnTracer();
@@ -44,7 +44,7 @@ class ColumnTracer {
     void fall_back(const std::string& why);
 
     const SpectralLens<T>* lens_;
-    SharedDevice* device_;
+    device::SharedDevice* device_;
     std::size_t most_;
     std::optional<DeviceLens<T>> there_;            // none: in packets
     std::array<std::unique_ptr<Piece>, 2> pieces_;  // the next one is on its way while one is traced
@@ -54,8 +54,8 @@ class ColumnTracer {
 template <class T>
 class DeviceEvents {
   public:
-    /// Of these rays, each at its wavelength of the lens. Throws DeviceError.
-    DeviceEvents(const Device& device, const DeviceLens<T>& lens, std::span<const Ray<T>> rays,
+    /// Of these rays, each at its wavelength of the lens. Throws device::Error.
+    DeviceEvents(const device::Device& device, const DeviceLens<T>& lens, std::span<const Ray<T>> rays,
                  std::span<const std::uint16_t> wavelengths, const RayWay<T>& way);
 
     /// In their order; and where the ray ended.
@@ -66,10 +66,10 @@ class DeviceEvents {
 
   private:
     std::size_t most_events_;
-    DeviceBuffer buffer_;
-    DeviceColumn<SurfaceEvent<T>> events_;
-    DeviceColumn<std::int32_t> counts_;
-    DeviceColumn<TracedRay<T>> ends_;
+    device::Buffer buffer_;
+    device::Column<SurfaceEvent<T>> events_;
+    device::Column<std::int32_t> counts_;
+    device::Column<TracedRay<T>> ends_;
 };
 
 extern template class ColumnTracer<float>;

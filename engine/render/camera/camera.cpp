@@ -44,13 +44,13 @@ std::int64_t CameraPaths::started() const {
 }
 
 Camera::Camera(const CameraSettings& settings, const SpectralSampling& sampling, const PixelFilter& filter,
-               const Cache& cache, bool meets_light_paths, std::shared_ptr<SharedDevice> device)
+               const Cache& cache, bool meets_light_paths, std::shared_ptr<device::SharedDevice> device)
     : Camera(settings, settings.focal_length_mm ? std::nullopt : std::optional(camera_lens(settings)), sampling, filter,
              cache, meets_light_paths, std::move(device)) {}
 
 Camera::Camera(const CameraSettings& settings, std::optional<optics::Lens> lens, const SpectralSampling& sampling,
                const PixelFilter& filter, const Cache& cache, bool meets_light_paths,
-               std::shared_ptr<SharedDevice> device)
+               std::shared_ptr<device::SharedDevice> device)
     : settings_(settings),
       cache_(cache),
       pose_(camera_to_world(settings)),
@@ -79,7 +79,7 @@ spectral::SpectralGrid Camera::make_grid(const SpectralSampling& sampling) {
     return {spectral::wavelength_strata(band.min_nm, band.max_nm, sampling.strata())};
 }
 
-Camera::Optics Camera::make_optics(bool meets_light_paths, std::shared_ptr<SharedDevice> device) const {
+Camera::Optics Camera::make_optics(bool meets_light_paths, std::shared_ptr<device::SharedDevice> device) const {
     if (device && !traces_surfaces(settings_.model)) {
         device->refuse(fmt::format("it traces lenses, and the camera's model is {}", name_of(settings_.model)));
     } else if (device && !film_.filter.is_box()) {

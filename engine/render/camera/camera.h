@@ -73,12 +73,12 @@ class Camera {
     /// picture of more values than fit. `device`: fills buffers of paths and finds pupils, to the same bits, where it
     /// can (SharedDevice::refuse says where not); none: the processors.
     Camera(const CameraSettings& settings, const SpectralSampling& sampling, const PixelFilter& filter,
-           const Cache& cache, bool meets_light_paths = false, std::shared_ptr<SharedDevice> device = nullptr);
+           const Cache& cache, bool meets_light_paths = false, std::shared_ptr<device::SharedDevice> device = nullptr);
     /// The same with a lens, stopped down and focused, in the place of the one that the settings name; none where they
     /// have a focal length instead.
     Camera(const CameraSettings& settings, std::optional<optics::Lens> lens, const SpectralSampling& sampling,
            const PixelFilter& filter, const Cache& cache, bool meets_light_paths = false,
-           std::shared_ptr<SharedDevice> device = nullptr);
+           std::shared_ptr<device::SharedDevice> device = nullptr);
     Camera(const Camera&) = delete;
     Camera& operator=(const Camera&) = delete;
 
@@ -128,7 +128,7 @@ class Camera {
     using Optics = std::variant<ExactCamera, PolynomialCamera, IdealCamera, ProfileCamera>;
     [[nodiscard]] spectral::SpectralGrid make_grid(const SpectralSampling& sampling);
     [[nodiscard]] FilmLayout make_film(int layers, const PixelFilter& filter) const;
-    [[nodiscard]] Optics make_optics(bool meets_light_paths, std::shared_ptr<SharedDevice> device) const;
+    [[nodiscard]] Optics make_optics(bool meets_light_paths, std::shared_ptr<device::SharedDevice> device) const;
 
     CameraSettings settings_;
     Cache cache_;

@@ -6,7 +6,7 @@
 namespace lensproof::render {
 
 template <class T>
-DeviceCamera<T>::DeviceCamera(const Device& device, const optics::SpectralLens<T>& lens,
+DeviceCamera<T>::DeviceCamera(const device::Device& device, const optics::SpectralLens<T>& lens,
                               const pupil::PupilSlices& pupil)
     : lens_(device, lens), tables_(*pupil.tables()) {
     const pupil::PupilSlices::TableSizes sizes = pupil.table_sizes();
@@ -56,7 +56,7 @@ void for_each_column(const Use& use) {
 std::size_t column_bytes(std::size_t paths) {
     std::size_t bytes = 0;
     for_each_column([&]<class Number>(Number* DevicePathColumns::* /*column*/) {
-        bytes += DeviceBuffer::bytes_for<Number>(paths);
+        bytes += device::Buffer::bytes_for<Number>(paths);
     });
     return bytes;
 }
@@ -64,16 +64,10 @@ std::size_t column_bytes(std::size_t paths) {
 }  // namespace
 
 template <class T>
-DevicePaths<T>::Piece::Piece(const Device& device) : buffer(device, column_bytes(kPiece)) {
-    for_each_column([&]<class Number>(Number* DevicePathColumns::*column) {
-        const DeviceColumn<Number> made = buffer.column<Number>(kPiece);
-        here.*column = made.here;
-        there.*column = made.there;
-    });
-}
+DevicePaths<T>::Piece::Piece(const device::Device& device) : buffer(device, column_bytes(kPiece)) {}
 
 template <class T>
-DevicePaths<T>::DevicePaths(SharedDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film,
+DevicePaths<T>::DevicePaths(device::SharedDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film,
                             double pupil_z, BasicLensPaths<T> fallback)
     : device_(&device), camera_(&camera), film_(film), pupil_z_(pupil_z), fallback_(std::move(fallback)) {}
 
@@ -92,7 +86,7 @@ void DevicePaths<T>::start(const CameraPathRange& range) {
                 start_piece(piece);
             }
             return;
-        } catch (const DeviceError& error) {
+        } catch (const device::Error& error) {
             device_->fail(error.what());
         }
     }
@@ -110,6 +104,12 @@ void DevicePaths<T>::start_piece(Piece& piece) {
     if (piece.size == 0) {
         return;
     }
+    piece.buffer.clear();
+    for_each_column([&]<class Number>(Number* DevicePathColumns::*column) {
+        const device::Column<Number> made = piece.buffer.template column<Number>(piece.size);
+        piece.here.*column = made.here;
+        piece.there.*column = made.there;
+    });
     const auto run = [&]<bool has_specials>() {
         piece.buffer.queue().run(PathJob<T, has_specials>{.lens = camera_->lens(),
                                                           .pupil = camera_->pupil(),
@@ -124,9 +124,7 @@ void DevicePaths<T>::start_piece(Piece& piece) {
                                  static_cast<int>(piece.size));
     };
     camera_->lens().has_more_than_spheres() ? run.template operator()<true>() : run.template operator()<false>();
-    for_each_column([&]<class Number>(Number* DevicePathColumns::*column) {
-        piece.buffer.download(DeviceColumn<Number>{piece.here.*column, piece.there.*column}, piece.size);
-    });
+    piece.buffer.download();
 }
 
 template <class T>
@@ -181,7 +179,7 @@ bool DevicePaths<T>::fill(CameraPathBuffer& buffer) {
         try {
             fill_from_device(buffer);
             return buffer.size > 0;
-        } catch (const DeviceError& error) {
+        } catch (const device::Error& error) {
             device_->fail(error.what());
         }
         pieces_.reset();

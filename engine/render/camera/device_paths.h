@@ -18,8 +18,8 @@ namespace lensproof::render {
 template <class T>
 class DeviceCamera {
   public:
-    /// `pupil` has tables. Throws DeviceError where they do not fit.
-    DeviceCamera(const Device& device, const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil);
+    /// `pupil` has tables. Throws device::Error where they do not fit.
+    DeviceCamera(const device::Device& device, const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil);
 
     [[nodiscard]] const optics::LensView<T>& lens() const { return lens_.view(); }
     [[nodiscard]] const pupil::PupilSliceTables& pupil() const { return tables_; }
@@ -27,7 +27,7 @@ class DeviceCamera {
 
   private:
     optics::DeviceLens<T> lens_;
-    Parcel parcel_;
+    device::Parcel parcel_;
     pupil::PupilSliceTables tables_;
     const sampler_detail::DirectionNumbers* directions_ = nullptr;
 };
@@ -39,7 +39,7 @@ template <class T>
 class DevicePaths {
   public:
     /// All outlive this. `fallback`: the same paths on this machine.
-    DevicePaths(SharedDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film, double pupil_z,
+    DevicePaths(device::SharedDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film, double pupil_z,
                 BasicLensPaths<T> fallback);
     DevicePaths(DevicePaths&&) noexcept = default;
     DevicePaths& operator=(DevicePaths&&) noexcept = default;
@@ -58,9 +58,9 @@ class DevicePaths {
 
     /// Some paths, here and on the device.
     struct Piece {
-        explicit Piece(const Device& device);
+        explicit Piece(const device::Device& device);
 
-        DeviceBuffer buffer;
+        device::Buffer buffer;
         DevicePathColumns here;
         DevicePathColumns there;
         std::uint64_t first = 0;  // of the range
@@ -72,10 +72,10 @@ class DevicePaths {
     /// Starts the range's next paths in a piece, if there are any.
     void start_piece(Piece& piece);
     void give(Piece& piece, CameraPathBuffer& buffer);
-    /// Until the buffer is full or the range ends; throws DeviceError.
+    /// Until the buffer is full or the range ends; throws device::Error.
     void fill_from_device(CameraPathBuffer& buffer);
 
-    SharedDevice* device_;
+    device::SharedDevice* device_;
     const DeviceCamera<T>* camera_;
     FilmSampling film_;
     double pupil_z_;

@@ -11,7 +11,7 @@ namespace lensproof::render {
 
 ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm,
                          const Cache& cache, bool meets_light_paths, TracePrecision precision,
-                         std::shared_ptr<SharedDevice> device)
+                         std::shared_ptr<device::SharedDevice> device)
     : device_(std::move(device)),
       lens_(optics::at_wavelengths<double>(lens, wavelengths_nm)),
       pupil_(pupil::kept_pupil_map(cache, lens_.at(), lens.is_rotationally_symmetric, film_radius_mm,
@@ -44,7 +44,7 @@ void ExactCamera::put_on_device() {
         } else {
             on_device_.emplace(std::in_place_type<DeviceCamera<double>>, device_->device(), lens_, slices_);
         }
-    } catch (const DeviceError& error) {
+    } catch (const device::Error& error) {
         device_->fail(error.what());
     }
 }

@@ -32,7 +32,7 @@ class ExactCamera {
     /// box filter's, the other wavelengths of a ray aside; or null.
     ExactCamera(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm,
                 const Cache& cache, bool meets_light_paths, TracePrecision precision = TracePrecision::in_double,
-                std::shared_ptr<SharedDevice> device = nullptr);
+                std::shared_ptr<device::SharedDevice> device = nullptr);
     ExactCamera(const ExactCamera&) = delete;  // slices refer to the map
     ExactCamera& operator=(const ExactCamera&) = delete;
 
@@ -84,7 +84,7 @@ class ExactCamera {
     [[nodiscard]] FilmImportance traced_importance(const optics::SpectralLens<T>& lens, const Sensor& sensor,
                                                    const Ray<double>& ray, const spectral::PathWavelengths& path) const;
 
-    std::shared_ptr<SharedDevice> device_;
+    std::shared_ptr<device::SharedDevice> device_;
     optics::SpectralLens<double> lens_;
     std::optional<optics::SpectralLens<float>> in_float_;
     pupil::PupilMap pupil_;

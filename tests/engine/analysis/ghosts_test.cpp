@@ -441,9 +441,9 @@ TEST(Ghosts, AreTheSameOnADevice) {
         settings.threads = 2;
         const std::vector<double> expected = numbers_of(survey_ghosts(lens, settings));
         EXPECT_GT(expected.size(), 100U);
-        for (const Device& device : every_device()) {
+        for (const device::Device& device : every_device()) {
             const auto fail = [](const std::string& why) { ADD_FAILURE() << why; };
-            settings.device = std::make_shared<SharedDevice>(device, fail, fail);
+            settings.device = std::make_shared<device::SharedDevice>(device, fail, fail);
             EXPECT_EQ(numbers_of(survey_ghosts(lens, settings)), expected) << name << ", " << device.name();
         }
     }
@@ -458,8 +458,8 @@ TEST(Ghosts, AreTheSameWhereADeviceFails) {
     int told = 1;
     for (int calls = 0; told > 0; calls += 5 + 4 * calls) {
         told = 0;
-        settings.device = std::make_shared<SharedDevice>(Device::stand_in(calls), SharedDevice::Hear(),
-                                                         [&](const std::string& /*why*/) { ++told; });
+        settings.device = std::make_shared<device::SharedDevice>(
+            device::Device::stand_in(calls), device::SharedDevice::Hear(), [&](const std::string& /*why*/) { ++told; });
         EXPECT_EQ(numbers_of(survey_ghosts(lens, settings)), expected) << calls;
         EXPECT_LE(told, 1);
         ASSERT_LT(calls, 10000000);

@@ -167,11 +167,11 @@ struct Heard {
 };
 
 /// Its picture, with a device's help or without.
-std::vector<float> pictured(const SceneSetup& setup, const PixelFilter& filter, const std::optional<Device>& device,
-                            Heard& heard) {
-    std::shared_ptr<SharedDevice> shared;
+std::vector<float> pictured(const SceneSetup& setup, const PixelFilter& filter,
+                            const std::optional<device::Device>& device, Heard& heard) {
+    std::shared_ptr<device::SharedDevice> shared;
     if (device) {
-        shared = std::make_shared<SharedDevice>(
+        shared = std::make_shared<device::SharedDevice>(
             *device, [&](const std::string& why) { heard.refusals.push_back(why); },
             [&](const std::string& why) { heard.failures.push_back(why); });
     }
@@ -184,7 +184,7 @@ TEST(PreparedScene, IsTheSamePictureOnADevice) {
         Heard heard;
         const std::vector<float> expected = pictured(wall(model), {}, {}, heard);
         EXPECT_GT(std::ranges::count_if(expected, [](float light) { return light > 0.0F; }), 200);
-        for (const Device& device : every_device()) {
+        for (const device::Device& device : every_device()) {
             EXPECT_EQ(pictured(wall(model), {}, device, heard), expected) << model << ", " << device.name();
         }
         EXPECT_TRUE(heard.refusals.empty());
@@ -200,7 +200,7 @@ TEST(PreparedScene, IsTheSamePictureWhereADeviceFails) {
     bool has_failed = true;
     for (int calls = 0; has_failed; calls += 1 + calls / 4) {
         Heard heard;
-        EXPECT_EQ(pictured(wall("exact"), {}, Device::stand_in(calls), heard), expected) << calls;
+        EXPECT_EQ(pictured(wall("exact"), {}, device::Device::stand_in(calls), heard), expected) << calls;
         EXPECT_LE(heard.failures.size(), 1U) << calls;
         EXPECT_TRUE(heard.refusals.empty());
         has_failed = !heard.failures.empty();
@@ -215,7 +215,7 @@ TEST(PreparedScene, SaysWhereADeviceCannotHelp) {
         heard.refusals.clear();
         Heard silent;
         const std::vector<float> expected = pictured(setup, filter, {}, silent);
-        EXPECT_EQ(pictured(setup, filter, Device::stand_in(), heard), expected);
+        EXPECT_EQ(pictured(setup, filter, device::Device::stand_in(), heard), expected);
         return heard.refusals.size() == 1 ? heard.refusals.front() : fmt::format("{} refusals", heard.refusals.size());
     };
     EXPECT_TRUE(says(refusal(wall("thin-lens"), {}), "thin-lens"));

@@ -1,6 +1,5 @@
-#include "engine/render/camera/packet/path_job.h"
-
 #include "engine/device/launch.cuh"
+#include "engine/render/camera/packet/path_job.h"
 
 using namespace lensproof::render;
 

@@ -23,7 +23,7 @@ SpectralLens<T> at_two(const Lens& lens) {
 
 /// Traces rays, every second one at each wavelength, event by event; returns how many events there were.
 template <class T>
-std::size_t compare_events(const Device& device, const Lens& lens, const std::vector<Ray<double>>& given,
+std::size_t compare_events(const device::Device& device, const Lens& lens, const std::vector<Ray<double>>& given,
                            const RayWay<T>& way) {
     const SpectralLens<T> at = at_two<T>(lens);
     std::vector<Ray<T>> rays;
@@ -69,7 +69,7 @@ void compare_all_ways(const Lens& lens) {
     for (Ray<double>& ray : reverse) {
         ray = {{ray.origin.x, ray.origin.y, lens.image_z}, -1.0 * ray.direction};
     }
-    for (const Device& device : every_device()) {
+    for (const device::Device& device : every_device()) {
         for (const Rims rims : {Rims::clip, Rims::follow}) {
             EXPECT_GT(compare_events<T>(device, lens, forward, {.rims = rims}), 202U);
             EXPECT_GT(compare_events<T>(device, lens, reverse, {.direction = Direction::reverse, .rims = rims}), 202U);
@@ -96,7 +96,7 @@ TEST(DeviceEvents, FollowGhosts) {
     std::vector<GhostPath> paths = some_ghosts(static_cast<int>(lens.surfaces.size()));
     paths.push_back({static_cast<int>(lens.surfaces.size()), 2});  // from the sensor
     paths.push_back({3, lens.stop_index()});
-    for (const Device& device : every_device()) {
+    for (const device::Device& device : every_device()) {
         std::size_t events = 0;
         for (const GhostPath& path : paths) {
             events += compare_events<double>(device, lens, rays,
@@ -138,8 +138,8 @@ TEST(ColumnTracer, TakesRaysInPieces) {
     const RayBatch<float> given = many_rays(lens);
     RayBatch<float> expected = given;
     trace_batch(at, expected, kTransmittance);
-    for (const Device& device : every_device()) {
-        SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
+    for (const device::Device& device : every_device()) {
+        device::SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
         ColumnTracer<float> tracer(at, &shared, kPiece);
         for (const int size : {100, given.size, 300}) {  // as they come
             RayBatch<float> found = given;
@@ -167,7 +167,7 @@ TEST(ColumnTracer, GoesOnWhereADeviceFails) {
     int calls = 0;
     for (; told == 1 && calls < 200; ++calls) {
         told = 0;
-        SharedDevice shared(Device::stand_in(calls), {}, [&](const std::string& /*why*/) { ++told; });
+        device::SharedDevice shared(device::Device::stand_in(calls), {}, [&](const std::string& /*why*/) { ++told; });
         ColumnTracer<float> tracer(at, &shared, kPiece);
         RayBatch<float> found = given;
         tracer.trace(found.columns(), kTransmittance);
@@ -181,8 +181,8 @@ TEST(ColumnTracer, GoesOnWhereADeviceFails) {
 
 TEST(ColumnTracer, OfNoRaysIsNothing) {
     const SpectralLens<double> at = at_two<double>(formats::load_lens("tessar"));
-    for (const Device& device : every_device()) {
-        SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
+    for (const device::Device& device : every_device()) {
+        device::SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
         RayBatch<double> none(0);
         ColumnTracer<double>(at, &shared).trace(none.columns());
         DeviceEvents<double>(device, DeviceLens<double>(device, at), {}, {}, {});
@@ -208,11 +208,11 @@ TEST(DeviceEvents, SayThatADeviceFails) {
     const std::vector<Ray<double>> rays = rays_at(lens, 10, 0.1);
     const std::vector<std::uint16_t> wavelengths(rays.size());
     const auto works = [&](int calls) {
-        const Device device = Device::stand_in(calls);
+        const device::Device device = device::Device::stand_in(calls);
         try {
             DeviceEvents<double>(device, DeviceLens<double>(device, at), rays, wavelengths, {});
             return true;
-        } catch (const DeviceError&) {
+        } catch (const device::Error&) {
             return false;
         }
     };

@@ -66,8 +66,8 @@ Fates compare_batch(const SpectralLens<T>& lens, const std::vector<Ray<double>>&
     }
     const bool is_coated = std::ranges::any_of(
         lens.at().front().specials, [](const SpecialSurface<T>& special) { return !special.coating.layers.empty(); });
-    for (const Device& device : every_device()) {
-        SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
+    for (const device::Device& device : every_device()) {
+        device::SharedDevice shared(device, {}, [](const std::string& why) { ADD_FAILURE() << why; });
         ColumnTracer<T> tracer(lens, &shared);
         const double tolerance = is_coated && device.is_gpu() ? 100.0 * std::numeric_limits<T>::epsilon() : 0.0;
         expect_same(device.name(), tolerance, [&](RayBatch<T>& batch) {
