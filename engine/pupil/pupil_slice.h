@@ -1,4 +1,5 @@
-// engine/pupil/pupil_slice.h — pupil points at one wavelength or at several at once, drawn without a branch.
+// engine/pupil/pupil_slice.h — pupil points at one wavelength or at several at once, drawn without a branch, and the
+// pdf of any.
 //
 // Compiled for each width of packets too: what it defines are templates over the number type, to be inlined.
 #pragma once
@@ -17,6 +18,7 @@ struct PupilSliceTables {
     static constexpr int kPanels = 24;
     static constexpr int kRadiusSteps = 1024;
     static constexpr int kAreaSteps = 128;
+    static constexpr int kWidthSteps = 256;
     // Of a region, one after the other: its width, then of each column lower and upper y and the area before it.
     static constexpr int kFirstColumn = 1;
     static constexpr int kPerColumn = 3;
@@ -31,10 +33,12 @@ struct PupilSliceTables {
     const std::uint8_t* panel_below = nullptr;  // [slice][node][step]: a panel no later than that which each 128th of
                                                 // the area begins in, between this node and the next
     const double* panel_fractions = nullptr;    // where the columns stand in a region's width
-    const double* per_panel = nullptr;          // 1 / the fraction that each panel has of the width
-    Disc disc;                                  // that the defensive fraction is drawn from
-    double disc_radius2 = 0.0;                  // of it, mm²
-    double disc_pdf = 0.0;                      // what it adds to the pdf there, 1/mm²
+    const std::int32_t* panel_across =
+        nullptr;                        // for each step in the width, the last panel that begins at or before it
+    const double* per_panel = nullptr;  // 1 / the fraction that each panel has of the width
+    Disc disc;                          // that the defensive fraction is drawn from
+    double disc_radius2 = 0.0;          // of it, mm²
+    double disc_pdf = 0.0;              // what it adds to the pdf there, 1/mm²
     double defensive_fraction = 0.0;
     double per_other_fraction = 1.0;  // 1 / (1 − the defensive fraction)
 };
@@ -117,16 +121,30 @@ class PupilSlice {
     [[nodiscard]] constexpr Mask contains(const Vec2<T>& point) const {
         const T x = cosine_ * point.x - sine_ * point.y;
         const T y = sine_ * point.x + cosine_ * point.y;
-        const T fraction = select(x < T(0), -x, x) / select(is_lit_, width_, T(1));
-        T panel(0);
-        for (Mask is_beyond = is_lit_; any(is_beyond);) {
-            is_beyond = panel + T(1) < T(PupilSliceTables::kPanels) &&
-                        !(look_up(tables_.panel_fractions + 1, panel) > fraction);
+        const T fraction_or_beyond = select(x < T(0), -x, x) / select(is_lit_, width_, T(1));
+        const Mask is_across = is_lit_ && fraction_or_beyond <= T(1);
+        const T fraction = select(is_across, fraction_or_beyond, T(0));
+        T panel = look_up(tables_.panel_across, fraction * T(PupilSliceTables::kWidthSteps));
+        for (Mask is_beyond = is_across; any(is_beyond);) {
+            is_beyond =
+                panel + T(1) < T(PupilSliceTables::kPanels) && look_up(tables_.panel_fractions + 1, panel) <= fraction;
             panel = select(is_beyond, panel + T(1), panel);
         }
         const PupilPanel<T> found = panel_at(panel);
         const T t = (fraction - found.fraction) * found.per_fraction;
-        return is_lit_ && !(fraction > T(1)) && !(y < found.lower_at(t)) && !(y > found.upper_at(t));
+        return is_across && !(y < found.lower_at(t)) && !(y > found.upper_at(t));
+    }
+
+    /// The pdf of a point that is drawn from the region or in defence, 1/mm²; 0 outside the region and the disc.
+    [[nodiscard]] constexpr T pdf(const Vec2<T>& point) const {
+        const Mask is_on_disc = !(point.x * point.x + point.y * point.y > T(tables_.disc_radius2));
+        return select(is_on_disc, T(tables_.disc_pdf), T(0)) + region_pdf(point);
+    }
+
+    /// What the region adds to it.
+    [[nodiscard]] constexpr T region_pdf(const Vec2<T>& point) const {
+        const Mask is_inside = contains(point);
+        return select(is_inside, T(1.0 - tables_.defensive_fraction) / select(is_inside, area(), T(1)), T(0));
     }
 
   private:
@@ -181,8 +199,7 @@ constexpr PupilDraw<double> draw_pupil_point(const PupilSliceTables& tables, dou
     const PupilSlice<double> region(tables, slice, sensor_point);
     if (u < tables.defensive_fraction) {
         const Vec2d point = tables.disc.warped(u / tables.defensive_fraction, v);
-        const double of_region = region.contains(point) ? (1.0 - tables.defensive_fraction) / region.area() : 0.0;
-        return {point, 1.0 / (tables.disc_pdf + of_region)};
+        return {point, 1.0 / (tables.disc_pdf + region.region_pdf(point))};
     }
     return region.sample(u, v);
 }

@@ -42,6 +42,9 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
     }
     panel_below_.insert(panel_below_.end(), kBytesBeyond, 0);
     const PupilFractions& fractions = pupil_fractions(nodes.symmetry);
+    for (int i = 0; i <= PupilSliceTables::kWidthSteps; ++i) {
+        panel_across_.push_back(fractions.panel(static_cast<double>(i) / PupilSliceTables::kWidthSteps));
+    }
     const Disc& disc = map.regions().disc();
     const double defensive_fraction = map.regions().defensive_fraction();
     tables_ = {.nodes = static_cast<int>(count),
@@ -52,6 +55,7 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
                .regions = regions_.data(),
                .panel_below = panel_below_.data(),
                .panel_fractions = fractions.at.data(),
+               .panel_across = panel_across_.data(),
                .per_panel = fractions.per_width.data(),
                .disc = disc,
                .disc_radius2 = disc.radius * disc.radius,
@@ -94,6 +98,13 @@ PupilDraw<double> PupilSlices::sample(Vec2d sensor_point, int slice, double u, d
         return {sample.point, sample.pdf > 0.0 ? 1.0 / sample.pdf : 0.0};
     }
     return draw_pupil_point(tables_, slice, sensor_point, u, v);
+}
+
+double PupilSlices::pdf(Vec2d sensor_point, int slice, Vec2d pupil_point) const {
+    if (tables() == nullptr) {
+        return map_.pdf(sensor_point, position_of(slice, slices_), pupil_point);
+    }
+    return PupilSlice<double>(tables_, slice, sensor_point).pdf(pupil_point);
 }
 
 }  // namespace lensproof::pupil

@@ -19,10 +19,14 @@ class PupilSlices {
     /// What the map draws at the slice's position, but for rounding.
     [[nodiscard]] PupilDraw<double> sample(Vec2d sensor_point, int slice, double u, double v) const;
 
+    /// The pdf that `sample` draws a point with, 1/mm²; 0 outside the disc and the region.
+    [[nodiscard]] double pdf(Vec2d sensor_point, int slice, Vec2d pupil_point) const;
+
     [[nodiscard]] const PupilMap& map() const { return map_; }
 
-    /// For inner loops, which draw with them what `sample` draws, to the bit. Nothing where the lens is not
-    /// rotationally symmetric, passes no light, or has more slices than are worth keeping: `sample` then asks the map.
+    /// For inner loops, which draw and weigh with them as `sample` and `pdf` do, to the bit. Nothing where the lens is
+    /// not rotationally symmetric, passes no light, or has more slices than are worth keeping: `sample` then asks the
+    /// map.
     [[nodiscard]] const PupilSliceTables* tables() const { return regions_.empty() ? nullptr : &tables_; }
 
     /// How long these tables are, for whoever copies them.
@@ -32,13 +36,15 @@ class PupilSlices {
         std::size_t node_below;
         std::size_t regions;
         std::size_t panel_below;
+        std::size_t panel_across;
     };
     [[nodiscard]] TableSizes table_sizes() const {
         return {.slices = per_end_.size(),
                 .nodes = map_.regions().nodes().fractions.size(),
                 .node_below = node_below_.size(),
                 .regions = regions_.size(),
-                .panel_below = panel_below_.size()};
+                .panel_below = panel_below_.size(),
+                .panel_across = panel_across_.size()};
     }
 
   private:
@@ -51,6 +57,7 @@ class PupilSlices {
     std::vector<std::int32_t> node_below_;
     std::vector<double> regions_;
     std::vector<std::uint8_t> panel_below_;
+    std::vector<std::int32_t> panel_across_;
     PupilSliceTables tables_;
 };
 

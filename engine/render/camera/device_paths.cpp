@@ -20,6 +20,7 @@ DeviceCamera<T>::DeviceCamera(const device::Device& device, const optics::Spectr
     const auto regions = add(tables_.regions, sizes.regions);
     const auto panel_below = add(tables_.panel_below, sizes.panel_below);
     const auto panel_fractions = add(tables_.panel_fractions, pupil::PupilSliceTables::kPanels + 1);
+    const auto panel_across = add(tables_.panel_across, sizes.panel_across);
     const auto per_panel = add(tables_.per_panel, pupil::PupilSliceTables::kPanels);
     const auto directions = add(&sampler_detail::kDirections, 1);
     parcel_.allocate(device);
@@ -31,6 +32,7 @@ DeviceCamera<T>::DeviceCamera(const device::Device& device, const optics::Spectr
     tables_.regions = parcel_.address(regions);
     tables_.panel_below = parcel_.address(panel_below);
     tables_.panel_fractions = parcel_.address(panel_fractions);
+    tables_.panel_across = parcel_.address(panel_across);
     tables_.per_panel = parcel_.address(per_panel);
     directions_ = parcel_.address(directions);
 }
