@@ -14,15 +14,6 @@ constexpr int kMostStrata = std::numeric_limits<std::uint16_t>::max() + 1;
 
 }  // namespace
 
-PathWavelengths SpectralGrid::path(int hero) const {
-    PathWavelengths path;
-    for (int i = 0; i < kWavelengthsPerPath; ++i) {
-        const int stratum = (hero + i * (strata.count / kWavelengthsPerPath)) % strata.count;
-        path.index[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(stratum);
-    }
-    return path;
-}
-
 std::array<double, kWavelengthsPerPath> SpectralGrid::wavelengths_nm(const PathWavelengths& path) const {
     std::array<double, kWavelengthsPerPath> wavelengths_nm{};
     for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {

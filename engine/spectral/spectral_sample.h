@@ -107,7 +107,15 @@ struct SpectralGrid {
     [[nodiscard]] int size() const { return strata.count; }
     /// The four wavelengths of a path whose hero is stratum `hero`, in [0, size()). As the hero runs through all
     /// strata, so does each of the others.
-    [[nodiscard]] PathWavelengths path(int hero) const;
+    [[nodiscard]] constexpr PathWavelengths path(int hero) const {
+        PathWavelengths path;
+        for (int i = 0; i < kWavelengthsPerPath; ++i) {
+            const int unwrapped = hero + i * (strata.count / kWavelengthsPerPath);
+            path.index[static_cast<std::size_t>(i)] =
+                static_cast<std::uint16_t>(unwrapped < strata.count ? unwrapped : unwrapped - strata.count);
+        }
+        return path;
+    }
     /// The midpoints, in the path's order.
     [[nodiscard]] std::array<double, kWavelengthsPerPath> wavelengths_nm(const PathWavelengths& path) const;
 };

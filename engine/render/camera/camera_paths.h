@@ -39,6 +39,7 @@ struct CameraPathBuffer {
     optics::PacketColumn<double> film_x;             // mm, in lens space
     optics::PacketColumn<double> film_y;
     optics::PacketColumn<double> weight;          // τ cos⁴θ / Z² / the pdf of the pupil point · the filter's, sr
+    optics::PacketColumn<double> etendue;         // of paths out of a LensPaths: cos⁴θ / Z² / that pdf, sr
     optics::RayBatch<double>::Vectors origin;     // on the first surface, mm, in lens space
     optics::RayBatch<double>::Vectors direction;  // away from the lens, of unit length
     /// Of paths that carry them: what each counts at its wavelengths, sr, the mean over which is the sample; and the

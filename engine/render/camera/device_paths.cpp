@@ -47,6 +47,7 @@ void for_each_column(const Use& use) {
     use(&DevicePathColumns::film_x);
     use(&DevicePathColumns::film_y);
     use(&DevicePathColumns::weight);
+    use(&DevicePathColumns::etendue);
     use(&DevicePathColumns::x);
     use(&DevicePathColumns::y);
     use(&DevicePathColumns::z);
@@ -147,6 +148,7 @@ void DevicePaths<T>::give(Piece& piece, CameraPathBuffer& buffer) {
         buffer.film_x[to] = from.film_x[next];
         buffer.film_y[to] = from.film_y[next];
         buffer.weight[to] = from.weight[next];
+        buffer.etendue[to] = from.etendue[next];
         buffer.origin.x[to] = from.x[next];
         buffer.origin.y[to] = from.y[next];
         buffer.origin.z[to] = from.z[next];

@@ -119,8 +119,8 @@ FilmImportance ExactCamera::traced_importance(const optics::SpectralLens<T>& len
         const optics::TraceLens<T>& at = lens.at(path.index[i]);
         const optics::TracedRay<T> traced = optics::trace<optics::Direction::forward>(at, optics::convert_ray<T>(ray));
         if (traced.status == optics::RayStatus::ok) {
-            const FilmMeeting film = meet_film(pupil_, lens_.at(0).image_z, band_position(path.index[i]),
-                                               optics::convert_ray<double>(traced.ray));
+            const FilmMeeting film =
+                meet_film(slices_, lens_.at(0).image_z, path.index[i], optics::convert_ray<double>(traced.ray));
             found.at_px[i] = sensor.pixel(film.point);
             found.transmittance[i] = traced.transmittance;
             found.pdf[i] = film.pdf;

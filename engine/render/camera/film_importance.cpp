@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/render/camera/packet/shared_weights.h"
+
 namespace lensproof::render {
 
 bool FilmImportance::is_dark() const {
@@ -22,21 +24,14 @@ double FilmImportance::shared_pdf(std::size_t wavelength) const {
 
 std::array<float, spectral::kWavelengthsPerPath> shared_weights(const FilmImportance& film, Vec2d centre_px,
                                                                 PathPdf& drawn) {
-    std::array<double, spectral::kWavelengthsPerPath> transmittance{};
-    drawn = {};
-    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
-        const Vec2d off = film.at_px[i] - centre_px;
-        // The hero's point lies in the pixel, wherever rounding may see it.
-        if (i == 0 || (off.x >= -0.5 && off.x < 0.5 && off.y >= -0.5 && off.y < 0.5)) {
-            transmittance[i] = film.transmittance[i];
-            drawn.shared += film.pdf[i] / spectral::kWavelengthsPerPath;
-            drawn.hero = i == 0 ? film.pdf[i] : drawn.hero;
-        }
+    std::array<FilmArrival<double>, spectral::kWavelengthsPerPath> arrivals{};
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+        arrivals[i] = {.at_px = film.at_px[i], .transmittance = film.transmittance[i], .pdf = film.pdf[i]};
     }
+    const SharedWeights<double, spectral::kWavelengthsPerPath> shared = shared_weights(arrivals, centre_px);
+    drawn = {.shared = shared.shared_pdf, .hero = shared.hero_pdf};
     std::array<float, spectral::kWavelengthsPerPath> weights{};
-    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
-        weights[i] = drawn.shared > 0.0 ? static_cast<float>(transmittance[i] / drawn.shared) : 0.0F;
-    }
+    std::ranges::transform(shared.weight, weights.begin(), [](double weight) { return static_cast<float>(weight); });
     return weights;
 }
 

@@ -93,7 +93,7 @@ bool BasicLensPaths<T>::fill(CameraPathBuffer& buffer) {
         }
         kernels_->aim_rays(lens_->at(0).image_z, pupil_->map().plane_z(), starts, aimed_);
         std::transform(starts.etendue.begin(), starts.etendue.begin() + starts.size, starts.filter_weight.begin(),
-                       starts.etendue.begin(), std::multiplies<>());
+                       starts.weight.begin(), std::multiplies<>());
         trace();
         move_survivors(starts, buffer);
     });
@@ -129,7 +129,7 @@ template <class T>
 void BasicLensPaths<T>::move_survivors(PathStarts& starts, CameraPathBuffer& buffer) {
     const auto move = [&](const auto& rays) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
-            starts.etendue[i] *= rays.transmittance[i];
+            starts.weight[i] *= rays.transmittance[i];
         }
         const Survivors survivors = find_survivors(starts, rays);
         const auto append = [&](const auto& from, auto& to) { survivors.copy(from.data(), to.data() + buffer.size); };
@@ -138,7 +138,8 @@ void BasicLensPaths<T>::move_survivors(PathStarts& starts, CameraPathBuffer& buf
         append(starts.wavelength, buffer.wavelength);
         append(starts.film_x, buffer.film_x);
         append(starts.film_y, buffer.film_y);
-        append(starts.etendue, buffer.weight);
+        append(starts.weight, buffer.weight);
+        append(starts.etendue, buffer.etendue);
         append(rays.origin.x, buffer.origin.x);
         append(rays.origin.y, buffer.origin.y);
         append(rays.origin.z, buffer.origin.z);

@@ -1,66 +1,136 @@
 #include "engine/render/camera/shared_rays.h"
 
 #include <algorithm>
+#include <functional>
+#include <type_traits>
 
-#include "engine/optics/convert_lens.h"
+#include "engine/render/camera/packet/meet_film.h"
 
 namespace lensproof::render {
 
-FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_position, const Ray<double>& behind) {
-    const auto crossing = [&](double z) {
-        const double along = (z - behind.origin.z) / behind.direction.z;
-        return Vec2d{behind.origin.x + along * behind.direction.x, behind.origin.y + along * behind.direction.y};
-    };
-    const Vec2d film = crossing(film_z);
-    const double per_mm2 = pupil.pdf(film, band_position, crossing(pupil.plane_z()));
-    const double distance = (film_z - pupil.plane_z()) / behind.direction.z;
-    return {.point = film, .pdf = per_mm2 * distance * distance / (behind.direction.z * behind.direction.z)};
+FilmMeeting meet_film(const pupil::PupilSlices& pupil, double film_z, int slice, const Ray<double>& behind) {
+    const FilmCrossing<double> at = cross_film(behind, film_z, pupil.map().plane_z());
+    return {.point = at.film, .pdf = pupil.pdf(at.film, slice, at.pupil) * at.per_etendue};
 }
+
+template <class T>
+BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
+                                    const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box,
+                                    std::optional<optics::SimdLevel> level)
+    : grid_(grid),
+      lens_(&lens),
+      pupil_(&pupil),
+      sensor_(sensor),
+      is_box_(is_box),
+      kernels_(&path_kernels(level)),
+      tracing_{.carry = optics::Carry::transmittance, .level = level},
+      turned_(kSharedChunk),
+      rays_(kSharedChunk) {}
 
 template <class T>
 void BasicSharedRays<T>::weigh(CameraPathBuffer& paths) {
     paths.weights.resize(static_cast<std::size_t>(paths.size));
     paths.pdf.resize(paths.weights.size());
-    for (int first = 0; first < paths.size; first += kBlock) {
-        const int count = std::min(kBlock, paths.size - first);
-        trace(paths, first, count);
-        for (int i = 0; i < count; ++i) {
-            const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
-            const spectral::PathWavelengths strata = grid_.path(paths.wavelength[path]);
-            FilmImportance film;
-            for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
-                const std::size_t ray = static_cast<std::size_t>(i) * spectral::kWavelengthsPerPath + m;
-                if (rays_.status[ray] != optics::RayStatus::ok) {
-                    continue;
-                }
-                const double band = static_cast<double>(strata.index[m]) / (lens_->wavelengths() - 1);
-                const FilmMeeting meeting = meet_film(pupil_->map(), lens_->at(0).image_z, band,
-                                                      optics::convert_ray<double>(rays_.ray(static_cast<int>(ray))));
-                film.at_px[m] = sensor_.pixel(meeting.point);
-                film.transmittance[m] = rays_.transmittance[ray];
-                film.pdf[m] = meeting.pdf;
-            }
-            paths.weights[path] = shared_weights(film, path_pixel(paths, path, sensor_, is_box_), paths.pdf[path]);
+    for (int first = 0; first < paths.size; first += kSharedChunk) {
+        chunk_.size = std::min(kSharedChunk, paths.size - first);
+        const auto at = static_cast<std::size_t>(first);
+        take_heroes(paths, at);
+        trace(paths, at);
+        kernels_->share_rays(sensor_, chunk_);
+        give_weights(paths, at);
+    }
+}
+
+template <class T>
+void BasicSharedRays<T>::take_heroes(const CameraPathBuffer& paths, std::size_t first) {
+    const auto at = static_cast<std::ptrdiff_t>(first);
+    std::copy_n(paths.weight.begin() + at, chunk_.size, chunk_.hero_weight.begin());
+    std::copy_n(paths.etendue.begin() + at, chunk_.size, chunk_.hero_etendue.begin());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(chunk_.size); ++i) {
+        const Vec2d centre = path_pixel(paths, first + i, sensor_, is_box_);
+        chunk_.centre_x[i] = centre.x;
+        chunk_.centre_y[i] = centre.y;
+    }
+}
+
+namespace {
+
+/// A column of paths from `first` on, each `changed`.
+template <class From, class To, class Change>
+void copy_changed(const From& column, std::size_t first, int count, To& to, const Change& changed) {
+    std::transform(column.data() + first, column.data() + first + count, to.data(),
+                   [&](double number) { return static_cast<typename To::value_type>(changed(number)); });
+}
+
+template <class T>
+void copy_rays(const optics::RayBatch<T>& from, optics::RayBatch<T>& to) {
+    const auto copy = [&](const auto& of, auto& column) { std::copy_n(of.begin(), from.size, column.begin()); };
+    copy(from.origin.x, to.origin.x);
+    copy(from.origin.y, to.origin.y);
+    copy(from.origin.z, to.origin.z);
+    copy(from.direction.x, to.direction.x);
+    copy(from.direction.y, to.direction.y);
+    copy(from.direction.z, to.direction.z);
+    to.size = from.size;
+}
+
+}  // namespace
+
+/// From outside forward through the lens.
+template <class T>
+void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first) {
+    const auto turn = [&](const auto& column, auto& to, const auto& changed) {
+        copy_changed(column, first, chunk_.size, to, changed);
+    };
+    turn(paths.origin.x, turned_.origin.x, std::identity());
+    turn(paths.origin.y, turned_.origin.y, std::identity());
+    turn(paths.origin.z, turned_.origin.z, std::identity());
+    turn(paths.direction.x, turned_.direction.x, std::negate<>());
+    turn(paths.direction.y, turned_.direction.y, std::negate<>());
+    turn(paths.direction.z, turned_.direction.z, std::negate<>());
+    turned_.size = chunk_.size;
+    for (std::size_t m = 1; m < spectral::kWavelengthsPerPath; ++m) {
+        copy_rays(turned_, rays_);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(chunk_.size); ++i) {
+            rays_.wavelength[i] = grid_.path(paths.wavelength[first + i]).index[m];
+        }
+        optics::trace_batch<optics::Direction::forward>(*lens_, rays_, tracing_);
+        weigh_meetings(rays_, chunk_.others[m - 1]);
+    }
+}
+
+template <class T>
+void BasicSharedRays<T>::weigh_meetings(const optics::RayBatch<T>& rays, FilmMeetings& meetings) const {
+    const double film_z = lens_->at(0).image_z;
+    const double pupil_z = pupil_->map().plane_z();
+    if constexpr (std::is_same_v<T, double>) {
+        kernels_->cross_film(film_z, pupil_z, rays, meetings);
+    } else {
+        kernels_->cross_film_in_float(film_z, pupil_z, rays, meetings);
+    }
+    const pupil::PupilSliceTables* tables = pupil_->tables();
+    if (tables != nullptr) {
+        kernels_->weigh_pupil_points(*tables, rays.wavelength.data(), rays.size, meetings);
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
+        const bool arrives = rays.status[i] == optics::RayStatus::ok;
+        meetings.transmittance[i] = arrives ? static_cast<double>(rays.transmittance[i]) : -1.0;
+        if (tables == nullptr) {
+            meetings.pupil_pdf[i] = arrives ? pupil_->pdf({meetings.film_x[i], meetings.film_y[i]}, rays.wavelength[i],
+                                                          {meetings.pupil_x[i], meetings.pupil_y[i]})
+                                            : 0.0;
         }
     }
 }
 
-/// From the ray outside forward through the lens, at each wavelength.
 template <class T>
-void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, int first, int count) {
-    rays_.size = count * spectral::kWavelengthsPerPath;
-    for (int i = 0; i < count; ++i) {
-        const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
-        const Ray<double> out = paths.ray(path);
-        const Ray<double> in{out.origin, -1.0 * out.direction};
-        const spectral::PathWavelengths strata = grid_.path(paths.wavelength[path]);
-        for (int m = 0; m < spectral::kWavelengthsPerPath; ++m) {
-            const int ray = i * spectral::kWavelengthsPerPath + m;
-            rays_.set(ray, optics::convert_ray<T>(in));
-            rays_.wavelength[static_cast<std::size_t>(ray)] = strata.index[static_cast<std::size_t>(m)];
+void BasicSharedRays<T>::give_weights(CameraPathBuffer& paths, std::size_t first) const {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(chunk_.size); ++i) {
+        for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
+            paths.weights[first + i][m] = chunk_.weight[m][i];
         }
+        paths.pdf[first + i] = {.shared = chunk_.shared_pdf[i], .hero = chunk_.hero_pdf[i]};
     }
-    optics::trace_batch<optics::Direction::forward>(*lens_, rays_, {.carry = optics::Carry::transmittance});
 }
 
 template class BasicSharedRays<float>;

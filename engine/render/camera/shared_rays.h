@@ -1,5 +1,7 @@
 // engine/render/camera/shared_rays.h — what a path outside the lens counts at each of its wavelengths.
 #pragma once
+#include <optional>
+
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_slices.h"
 #include "engine/render/camera/camera_paths.h"
@@ -8,12 +10,12 @@
 namespace lensproof::render {
 
 /// Where a ray behind the lens (lens space) meets the film, and the pdf with which camera paths of a wavelength, by its
-/// position in the map's band, draw it: per etendue, 1/(mm² sr), times a pixel's area.
+/// slice, draw it: per etendue, 1/(mm² sr), times a pixel's area.
 struct FilmMeeting {
     Vec2d point;
     double pdf = 0.0;
 };
-FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_position, const Ray<double>& behind);
+FilmMeeting meet_film(const pupil::PupilSlices& pupil, double film_z, int slice, const Ray<double>& behind);
 
 /// Camera paths are drawn for their hero; outside the lens the ray serves the other wavelengths too, each of which
 /// reaches it by its own path through the glass, from its own point on the film. Of the four techniques "draw the ray
@@ -27,36 +29,41 @@ FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_p
 /// wavelength brings elsewhere, that pixel's own paths bring. A lens whose colours part by more than a pixel leaves the
 /// hero alone, with w = 4 τ / p.
 ///
-/// T: double or float, in which the rays are traced.
+/// The hero's own p and τ are those that its path was made with; the other wavelengths' rays are traced.
+///
+/// T: double or float, in which they are.
 template <class T>
 class BasicSharedRays {
   public:
     /// Lens and pupil outlive it. `lens` at the strata of `grid`. `is_box`: pixels are the filter, as w needs it; else
-    /// the pixel of a path is the one that its film point lies in, and w is for its pdfs alone.
+    /// the pixel of a path is the one that its film point lies in, and w is for its pdfs alone. `level`: that of
+    /// `trace_batch`.
     BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
-                    const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box)
-        : grid_(grid),
-          lens_(&lens),
-          pupil_(&pupil),
-          sensor_(sensor),
-          is_box_(is_box),
-          rays_(kBlock * spectral::kWavelengthsPerPath) {}
+                    const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box,
+                    std::optional<optics::SimdLevel> level = {});
 
-    /// Writes w of its four wavelengths to every path of the buffer, and the pdfs that it was drawn with: ¼ Σ_m p_m,
-    /// and p of the hero.
+    /// Of paths out of a BasicLensPaths. Writes w of its four wavelengths to every path of the buffer, and the pdfs
+    /// that it was drawn with: ¼ Σ_m p_m, and p of the hero.
     void weigh(CameraPathBuffer& paths);
 
   private:
-    static constexpr int kBlock = 64;  // paths; their rays stay in the first-level cache
-
-    void trace(const CameraPathBuffer& paths, int first, int count);
+    /// The chunk's paths begin with `first`.
+    void take_heroes(const CameraPathBuffer& paths, std::size_t first);
+    /// Each of the others' rays, and where it ends.
+    void trace(const CameraPathBuffer& paths, std::size_t first);
+    void weigh_meetings(const optics::RayBatch<T>& rays, FilmMeetings& meetings) const;
+    void give_weights(CameraPathBuffer& paths, std::size_t first) const;
 
     spectral::SpectralGrid grid_;
     const optics::SpectralLens<T>* lens_;
     const pupil::PupilSlices* pupil_;
     Sensor sensor_;
     bool is_box_;
-    optics::RayBatch<T> rays_;
+    const PathKernels* kernels_;
+    optics::BatchSettings tracing_;
+    optics::RayBatch<T> turned_;  // the paths' rays on their way in
+    optics::RayBatch<T> rays_;    // a wavelength's
+    SharedPaths chunk_{};
 };
 using SharedRays = BasicSharedRays<double>;
 

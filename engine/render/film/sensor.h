@@ -23,8 +23,9 @@ struct Sensor {
         return {-(u - axis().x) * pixel_pitch_mm, (v - axis().y) * pixel_pitch_mm};
     }
     /// The pixel coordinates of a point, on the sensor or beyond it: `position` undone.
-    [[nodiscard]] constexpr Vec2d pixel(Vec2d position) const {
-        return {axis().x - position.x / pixel_pitch_mm, position.y / pixel_pitch_mm + axis().y};
+    template <class T = double>
+    [[nodiscard]] constexpr Vec2<T> pixel(const Vec2<T>& position) const {
+        return {T(axis().x) - position.x / T(pixel_pitch_mm), position.y / T(pixel_pitch_mm) + T(axis().y)};
     }
     /// From the axis to the farthest point of it; or of what lies up to `margin_px` around it.
     [[nodiscard]] double half_diagonal_mm(double margin_px = 0.0) const {

@@ -29,6 +29,7 @@ struct alignas(optics::kPacketAlignment) PathStarts {
     PathColumn<double> pupil_y;
     PathColumn<double> pupil_area;  // 1 / the pdf that the pupil point was drawn with, mm²; 0: no path
     PathColumn<double> etendue;     // cos⁴θ / Z² · that area, sr
+    PathColumn<double> weight;      // that · the filter's weight · the lens's transmittance, sr
     int size = 0;
 };
 

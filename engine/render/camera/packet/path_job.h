@@ -24,6 +24,7 @@ struct DevicePathColumns {
     double* film_x = nullptr;
     double* film_y = nullptr;
     double* weight = nullptr;
+    double* etendue = nullptr;
     double* x = nullptr;
     double* y = nullptr;
     double* z = nullptr;
@@ -89,6 +90,7 @@ struct PathJob {
         paths.film_x[item] = film.x;
         paths.film_y[item] = film.y;
         paths.weight[item] = aimed.etendue * static_cast<double>(traced.transmittance);
+        paths.etendue[item] = aimed.etendue;
         paths.x[item] = traced.ray.origin.x;
         paths.y[item] = traced.ray.origin.y;
         paths.z[item] = traced.ray.origin.z;

@@ -1,4 +1,5 @@
-// engine/render/camera/packet/path_kernel.h — the loops that camera paths start with, for compilers to vectorise.
+// engine/render/camera/packet/path_kernel.h — the loops that camera paths start with and are weighed in, for compilers
+// to vectorise.
 //
 // Only the files path_kernel_*.cpp include this. Each is compiled for its own instructions, so what it defines must not
 // be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
@@ -8,7 +9,9 @@
 
 #include "engine/base/pack.h"
 #include "engine/render/camera/packet/aim.h"
+#include "engine/render/camera/packet/meet_film.h"
 #include "engine/render/camera/packet/path_kernels.h"
+#include "engine/render/camera/packet/shared_weights.h"
 #include "engine/render/sampling/sampler.h"
 
 namespace lensproof::render {
@@ -102,9 +105,78 @@ template <class Abi>
     rays.size = starts.size;
 }
 
+template <class Abi, class T>
+[[gnu::flatten]] void cross_film_with(double film_z, double pupil_z, const optics::RayBatch<T>& behind,
+                                      FilmMeetings& meetings) {
+    using Numbers = Pack<double, Abi>;
+    const auto vectors = [](const typename optics::RayBatch<T>::Vectors& of, int i) {
+        return Vec3<Numbers>{Numbers::load(of.x.data() + i), Numbers::load(of.y.data() + i),
+                             Numbers::load(of.z.data() + i)};
+    };
+    for (int i = 0; i < behind.size; i += Numbers::kLanes) {
+        const FilmCrossing<Numbers> at = cross_film<Numbers>({vectors(behind.origin, i), vectors(behind.direction, i)},
+                                                             Numbers(film_z), Numbers(pupil_z));
+        at.film.x.store(meetings.film_x.data() + i);
+        at.film.y.store(meetings.film_y.data() + i);
+        at.pupil.x.store(meetings.pupil_x.data() + i);
+        at.pupil.y.store(meetings.pupil_y.data() + i);
+        at.per_etendue.store(meetings.per_etendue.data() + i);
+    }
+}
+
+template <class Abi>
+[[gnu::flatten]] void weigh_pupil_points(const pupil::PupilSliceTables& slices, const std::uint16_t* wavelength,
+                                         int count, FilmMeetings& meetings) {
+    using Numbers = Pack<double, Abi>;
+    for (int i = 0; i < count; i += Numbers::kLanes) {
+        const pupil::PupilSlice<Numbers> slice(
+            slices, Numbers::load(wavelength + i),
+            {Numbers::load(meetings.film_x.data() + i), Numbers::load(meetings.film_y.data() + i)});
+        slice.pdf({Numbers::load(meetings.pupil_x.data() + i), Numbers::load(meetings.pupil_y.data() + i)})
+            .store(meetings.pupil_pdf.data() + i);
+    }
+}
+
+/// Those of one wavelength, from the i-th path on.
+template <class Numbers>
+FilmArrival<Numbers> arrivals(const Sensor& sensor, const FilmMeetings& meetings, int i) {
+    const Numbers transmittance = Numbers::load(meetings.transmittance.data() + i);
+    const auto arrives = transmittance >= Numbers(0.0);
+    const Numbers pdf = Numbers::load(meetings.pupil_pdf.data() + i) * Numbers::load(meetings.per_etendue.data() + i);
+    return {.at_px = sensor.pixel<Numbers>(
+                {Numbers::load(meetings.film_x.data() + i), Numbers::load(meetings.film_y.data() + i)}),
+            .transmittance = select(arrives, transmittance, Numbers(0.0)),
+            .pdf = select(arrives, pdf, Numbers(0.0))};
+}
+
+template <class Abi>
+[[gnu::flatten]] void share_rays(const Sensor& sensor, SharedPaths& paths) {
+    using Numbers = Pack<double, Abi>;
+    for (int i = 0; i < paths.size; i += Numbers::kLanes) {
+        const Numbers hero_pdf = Numbers(1.0) / Numbers::load(paths.hero_etendue.data() + i);
+        const FilmArrival<Numbers> hero{
+            .at_px = {}, .transmittance = Numbers::load(paths.hero_weight.data() + i) * hero_pdf, .pdf = hero_pdf};
+        const auto shared = shared_weights<Numbers, spectral::kWavelengthsPerPath>(
+            {hero, arrivals<Numbers>(sensor, paths.others[0], i), arrivals<Numbers>(sensor, paths.others[1], i),
+             arrivals<Numbers>(sensor, paths.others[2], i)},
+            {Numbers::load(paths.centre_x.data() + i), Numbers::load(paths.centre_y.data() + i)});
+        for (std::size_t m = 0; m < shared.weight.size(); ++m) {
+            shared.weight[m].store(paths.weight[m].data() + i);
+        }
+        shared.shared_pdf.store(paths.shared_pdf.data() + i);
+        shared.hero_pdf.store(paths.hero_pdf.data() + i);
+    }
+}
+
 template <class Abi>
 PathKernels path_kernels_of() {
-    return {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi>};
+    return {.draw_samples = draw_samples<Abi>,
+            .draw_pupil_points = draw_pupil_points<Abi>,
+            .aim_rays = aim_rays<Abi>,
+            .cross_film = cross_film_with<Abi, double>,
+            .cross_film_in_float = cross_film_with<Abi, float>,
+            .weigh_pupil_points = weigh_pupil_points<Abi>,
+            .share_rays = share_rays<Abi>};
 }
 
 }  // namespace lensproof::render

@@ -1,5 +1,5 @@
-// engine/render/camera/packet/path_kernels.h — the loops that camera paths start with, one of each for each width of
-// packets.
+// engine/render/camera/packet/path_kernels.h — the loops that camera paths start with and are weighed in, one of each
+// for each width of packets.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -7,6 +7,7 @@
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_slice.h"
 #include "engine/render/camera/packet/path_chunk.h"
+#include "engine/render/camera/packet/shared_chunk.h"
 
 namespace lensproof::render {
 
@@ -20,6 +21,18 @@ struct PathKernels {
 
     /// From film and pupil points the rays and their etendue.
     void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<double>& rays);
+
+    /// Where rays behind the lens cross film and pupil.
+    void (*cross_film)(double film_z, double pupil_z, const optics::RayBatch<double>& behind, FilmMeetings& meetings);
+    void (*cross_film_in_float)(double film_z, double pupil_z, const optics::RayBatch<float>& behind,
+                                FilmMeetings& meetings);
+
+    /// The pdfs of the pupil points, a wavelength each.
+    void (*weigh_pupil_points)(const pupil::PupilSliceTables& slices, const std::uint16_t* wavelength, int count,
+                               FilmMeetings& meetings);
+
+    /// From meetings and heroes the weights and pdfs.
+    void (*share_rays)(const Sensor& sensor, SharedPaths& paths);
 };
 
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.

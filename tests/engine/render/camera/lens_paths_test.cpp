@@ -36,7 +36,8 @@ Paths one_by_one(const TestCamera& camera, const CameraPathRange& range) {
                 camera.lens.at(wavelength), {{film.x, film.y, film_z}, direction});
             if (traced.status == optics::RayStatus::ok) {
                 const double etendue = direction.z * direction.z * per_distance2 * in_pupil.area;
-                found.valid.push_back({pixel, sample, wavelength, film, traced.transmittance * etendue, traced.ray});
+                found.valid.push_back(
+                    {pixel, sample, wavelength, film, traced.transmittance * etendue, etendue, traced.ray});
             }
         }
     }

@@ -34,10 +34,12 @@ struct Path {
     int wavelength = 0;
     Vec2d film;
     double weight = 0.0;
+    double etendue = 0.0;
     Ray<double> exit;
     friend bool operator==(const Path& a, const Path& b) {
         return a.pixel == b.pixel && a.sample == b.sample && a.wavelength == b.wavelength && a.film == b.film &&
-               a.weight == b.weight && a.exit.origin == b.exit.origin && a.exit.direction == b.exit.direction;
+               a.weight == b.weight && a.etendue == b.etendue && a.exit.origin == b.exit.origin &&
+               a.exit.direction == b.exit.direction;
     }
 };
 
@@ -61,6 +63,7 @@ Paths all_paths(Filled&& paths, const CameraPathRange& range, int capacity) {
                                    buffer.wavelength[i],
                                    {buffer.film_x[i], buffer.film_y[i]},
                                    buffer.weight[i],
+                                   buffer.etendue[i],
                                    buffer.ray(i)});
         }
     }
