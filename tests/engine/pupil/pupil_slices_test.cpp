@@ -137,7 +137,7 @@ TEST(PupilSlices, WeighPointsAsTheMapDoes) {
                 const double weighed = lens.slices.pdf(s.film, s.slice, point);
                 const auto by_map = [&](Vec2d at) { return lens.map.pdf(s.film, position, at); };
                 EXPECT_TRUE(is_pdf(by_map, point, weighed))
-                    << name << ": " << weighed << " and " << by_map(point) << " at " << point.x << ", " << point.y;
+                    << weighed << " and " << by_map(point) << " at " << point.x << ", " << point.y;
                 return weighed;
             };
             const double pdf = expect_the_same({reach_mm * (2.0 * s.u - 1.0), reach_mm * (2.0 * s.v - 1.0)});
@@ -191,9 +191,11 @@ TEST(PupilSlices, HaveAPdfThatIntegratesToWhatTheyDraw) {
             const double expected = started == 10000 ? 1.0 : lens.map.regions().defensive_fraction();
             EXPECT_NEAR(started / 10000.0, expected, 0.003);
             double integral = 0.0;
-            for (int i = 0; i < kSquares * kSquares; ++i) {
-                const Vec2d at{side_mm * (i % kSquares + 0.5) - reach_mm, side_mm * (i / kSquares + 0.5) - reach_mm};
-                integral += lens.slices.pdf(film, 2, at) * side_mm * side_mm;
+            for (int row = 0; row < kSquares; ++row) {
+                for (int column = 0; column < kSquares; ++column) {
+                    const Vec2d at{side_mm * (column + 0.5) - reach_mm, side_mm * (row + 0.5) - reach_mm};
+                    integral += lens.slices.pdf(film, 2, at) * side_mm * side_mm;
+                }
             }
             EXPECT_NEAR(integral, expected, 1e-3 * expected) << name << " at " << film.x << ", " << film.y;
         }
