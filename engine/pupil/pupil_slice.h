@@ -24,21 +24,20 @@ struct PupilSliceTables {
     static constexpr int kPerColumn = 3;
     static constexpr int kNumbers = kFirstColumn + kPerColumn * (kPanels + 1);
 
-    int nodes = 0;                              // in radius
-    const double* per_end = nullptr;            // of a slice: 1 / the radius where the light ends, 1/mm
-    const double* fractions = nullptr;          // of a node: its radius over the end
-    const double* per_step = nullptr;           // 1 / the step to the next fraction
-    const std::int32_t* node_below = nullptr;   // for each step in radius, the last node at or below it
-    const double* regions = nullptr;            // [slice][node][number]
-    const std::uint8_t* panel_below = nullptr;  // [slice][node][step]: a panel no later than that which each 128th of
-                                                // the area begins in, between this node and the next
-    const double* panel_fractions = nullptr;    // where the columns stand in a region's width
-    const std::int32_t* panel_across =
-        nullptr;                        // for each step in the width, the last panel that begins at or before it
-    const double* per_panel = nullptr;  // 1 / the fraction that each panel has of the width
-    Disc disc;                          // that the defensive fraction is drawn from
-    double disc_radius2 = 0.0;          // of it, mm²
-    double disc_pdf = 0.0;              // what it adds to the pdf there, 1/mm²
+    int nodes = 0;                               // in radius
+    const double* per_end = nullptr;             // of a slice: 1 / the radius where the light ends, 1/mm
+    const double* fractions = nullptr;           // of a node: its radius over the end
+    const double* per_step = nullptr;            // 1 / the step to the next fraction
+    const std::int32_t* node_below = nullptr;    // for each step in radius, the last node at or below it
+    const double* regions = nullptr;             // [slice][node][number]
+    const std::uint8_t* panel_below = nullptr;   // [slice][node][step]: a panel no later than that which each 128th of
+                                                 // the area begins in, between this node and the next
+    const double* panel_fractions = nullptr;     // where the columns stand in a region's width
+    const std::int32_t* panel_across = nullptr;  // for each step in the width, the last panel that begins no later
+    const double* per_panel = nullptr;           // 1 / the fraction that each panel has of the width
+    Disc disc;                                   // that the defensive fraction is drawn from
+    double disc_radius2 = 0.0;                   // of it, mm²
+    double disc_pdf = 0.0;                       // what it adds to the pdf there, 1/mm²
     double defensive_fraction = 0.0;
     double per_other_fraction = 1.0;  // 1 / (1 − the defensive fraction)
 };

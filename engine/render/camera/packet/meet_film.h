@@ -9,8 +9,7 @@ template <class T>
 struct FilmCrossing {
     Vec2<T> film;
     Vec2<T> pupil;
-    T per_etendue;  // Z² / cos⁴θ, mm²/sr: a pdf over the pupil times this is one over the etendue, times the film's
-                    // area
+    T per_etendue;  // Z² / cos⁴θ, mm²/sr: makes of a pdf over the pupil one over the etendue, times a pixel's area
 };
 
 /// T: double, or a packet of them; every lane has the bits of the double. The direction may have any length.
