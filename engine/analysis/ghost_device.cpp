@@ -54,18 +54,12 @@ auto GhostDevice::with_buffer(std::size_t bytes, const Use& use)
 
 GhostRays GhostDevice::rays(const GhostScene& scene, const optics::GhostPath& path, std::span<const Vec2d> offsets,
                             device::Buffer& buffer) const {
-    const auto sent = [&]<class Item>(std::span<const Item> items) {
-        const device::Column<Item> column = buffer.column<Item>(items.size());
-        std::ranges::copy(items, column.here);
-        buffer.upload(column, items.size());
-        return column.there;
-    };
     return {.lens = lens_.view(),
             .beam = scene.beam,
             .mirrors = scene.mirrors,
             .image_radius = scene.image_radius,
-            .path = {sent(std::span<const int>(path)), path.size()},
-            .offsets = sent(offsets)};
+            .path = {buffer.send(std::span<const int>(path)), path.size()},
+            .offsets = buffer.send(offsets)};
 }
 
 std::optional<std::vector<std::optional<Landing>>> GhostDevice::landings(const GhostScene& scene,

@@ -171,7 +171,7 @@ std::shared_ptr<GhostDevice> ghost_device(const optics::TraceLens<double>& lens,
     try {
         return std::make_shared<GhostDevice>(device, lens);
     } catch (const device::Error& error) {
-        device->fail(error.what());
+        device->refuse(error.what());
         return nullptr;
     }
 }

@@ -76,6 +76,15 @@ Device::Found Device::find() {
     if (const cudaError_t status = cudaFree(nullptr); status != cudaSuccess) {  // makes the context
         return {.device = {}, .why_not = fmt::format("{}: {}", properties.name, cudaGetErrorString(status))};
     }
+    // A lens, its pupil and paths ahead for some dozen threads take less.
+    constexpr std::size_t kLeastMiB = 256;
+    std::size_t free = 0;
+    std::size_t total = 0;
+    if (cudaMemGetInfo(&free, &total) == cudaSuccess && free >> 20U < kLeastMiB) {
+        return {.device = {},
+                .why_not = fmt::format("{}: {} MiB of its memory are free, expected {}", properties.name, free >> 20U,
+                                       kLeastMiB)};
+    }
     const auto state = std::make_shared<State>();
     state->name = properties.name;
     state->is_gpu = true;

@@ -93,7 +93,7 @@ class Device {
 
 struct Device::Found {
     std::optional<Device> device;
-    std::string why_not;  // "this build has no CUDA", "no CUDA-capable device is detected"
+    std::string why_not;  // "this build has no CUDA", "no CUDA-capable device is detected", too little memory
 };
 
 /// Bytes on a device, or of this machine that the device reaches at its full speed. Throws Error where there are

@@ -1,7 +1,9 @@
 // engine/device/device_buffer.h — columns that are filled on a device and read here, or the other way.
 #pragma once
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <span>
 #include <type_traits>
 
 #include "engine/device/device.h"
@@ -55,6 +57,14 @@ class Buffer {
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
     [[nodiscard]] Device::Queue& queue() { return queue_; }
+    /// A column of these, on its way there: its place there.
+    template <class T>
+    const T* send(std::span<const T> items) {
+        const Column<T> column = this->column<T>(items.size());
+        std::ranges::copy(items, column.here);
+        upload(column, items.size());
+        return column.there;
+    }
     /// The first `size` of a column.
     template <class T>
     void upload(const Column<T>& column, std::size_t size) {

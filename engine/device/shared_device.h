@@ -17,8 +17,8 @@ class SharedDevice {
   public:
     using Hear = std::function<void(const std::string& why)>;
 
-    /// `on_refusal` hears once of each thing that a device cannot do, before that is begun, and may throw where it has
-    /// to; `on_failure` of the first call that fails.
+    /// `on_refusal` hears once of each thing that a device cannot do or has no memory for, before that is begun, and
+    /// may throw where it has to; `on_failure` of the first call that fails in the midst of it.
     SharedDevice(Device device, Hear on_refusal, Hear on_failure)
         : device_(std::move(device)), on_refusal_(std::move(on_refusal)), on_failure_(std::move(on_failure)) {}
 

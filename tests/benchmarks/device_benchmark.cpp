@@ -22,7 +22,7 @@ std::size_t rays_for(const device::Device& device) {
     return std::size_t{1} << (device.is_gpu() ? 22U : 10U);
 }
 
-/// Rays of the wavelengths side by side, from all of the front towards the axis, that pass the lens.
+/// Rays from all of the front, up to 8° from the axis, that pass the lens.
 template <class T>
 std::vector<Ray<T>> passing_rays(const optics::TraceLens<double>& lens, double semi_diameter) {
     std::mt19937_64 random(1);

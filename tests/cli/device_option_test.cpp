@@ -14,19 +14,19 @@ namespace lensproof::device_option_test {
 /// Also on machines that have a GPU.
 const Variable kNoGpu("CUDA_VISIBLE_DEVICES", "");
 
-/// Rays of more wavelengths than are traced together, over all of a Tessar's front and beyond.
-std::string many_rays() {
+/// Rays of many wavelengths, over all of a Tessar's front and beyond.
+std::string many_rays(int count) {
     std::string rays = kRayHeader;
-    for (int i = 0; i < 600; ++i) {
-        rays += fmt::format("r{},{},{},-10,{},{},1,{}\n", i, 0.05 * i - 15.0, 0.01 * i, 0.0005 * (i % 100),
-                            -0.001 * (i % 37), 420.0 + i % 150);
+    for (int i = 0; i < count; ++i) {
+        rays += fmt::format("r{},{},{},-10,{},{},1,{}\n", i, 0.05 * (i % 600) - 15.0, 0.01 * (i % 600),
+                            0.0005 * (i % 100), -0.001 * (i % 37), 420.0 + i % 150);
     }
     return rays;
 }
 
 TEST(DeviceOption, TracesToTheSameBytes) {
     const Workplace place;
-    place.file("rays.csv", many_rays());
+    place.file("rays.csv", many_rays(600));
     for (const std::vector<std::string>& more :
          {std::vector<std::string>{},
           {"--precision", "float"},
@@ -45,6 +45,18 @@ TEST(DeviceOption, TracesToTheSameBytes) {
         };
         EXPECT_EQ(traced("stand-in"), traced("cpu")) << fmt::format("{}", fmt::join(more, " "));
     }
+}
+
+// A device is sent 16384 at a time.
+TEST(DeviceOption, TracesMoreRaysThanGoTogether) {
+    const Workplace place;
+    place.file("rays.csv", many_rays(17000));
+    const auto traced = [&](const std::string& device) {
+        return place.run({"trace", "tessar", "--rays", "rays.csv", "--device", device}).out;
+    };
+    const std::string usual = traced("cpu");
+    EXPECT_TRUE(says(usual.substr(usual.size() - 200), "r16999,"));
+    EXPECT_TRUE(traced("stand-in") == usual);
 }
 
 TEST(DeviceOption, FollowsRaysInReverseToo) {

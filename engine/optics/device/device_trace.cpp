@@ -118,23 +118,12 @@ ColumnTracer<T>::ColumnTracer(const SpectralLens<T>& lens, device::SharedDevice*
     try {
         there_.emplace(device_->device(), lens);
     } catch (const device::Error& error) {
-        fall_back(error.what());
+        device_->refuse(error.what());
     }
 }
 
 template <class T>
-ColumnTracer<T>::ColumnTracer(ColumnTracer&&) noexcept = default;
-template <class T>
-ColumnTracer<T>& ColumnTracer<T>::operator=(ColumnTracer&&) noexcept = default;
-template <class T>
 ColumnTracer<T>::~ColumnTracer() = default;
-
-template <class T>
-void ColumnTracer<T>::fall_back(const std::string& why) {
-    there_.reset();
-    pieces_ = {};
-    device_->fail(why);
-}
 
 template <class T>
 template <Direction direction>
@@ -176,7 +165,9 @@ std::size_t ColumnTracer<T>::trace_on_device(const RayColumns<T>& rays, const Ba
         done += pieces_[next]->finish(rays, settings.carry);
         done += pieces_[1 - next]->finish(rays, settings.carry);
     } catch (const device::Error& error) {
-        fall_back(error.what());
+        there_.reset();
+        pieces_ = {};
+        device_->fail(error.what());
     }
     return done;
 }
@@ -200,25 +191,19 @@ DeviceEvents<T>::DeviceEvents(const device::Device& device, const DeviceLens<T>&
       events_(buffer_.column<SurfaceEvent<T>>(rays.size() * most_events_)),
       counts_(buffer_.column<std::int32_t>(rays.size())),
       ends_(buffer_.column<TracedRay<T>>(rays.size())) {
-    const auto sent = [&]<class Item>(std::span<const Item> items) {
-        const device::Column<Item> column = buffer_.column<Item>(items.size());
-        std::ranges::copy(items, column.here);
-        buffer_.upload(column, items.size());
-        return column.there;
-    };
-    buffer_.queue().run(
-        EventJob<T>{.lens = lens.view(),
-                    .way = {.direction = way.direction,
-                            .rims = way.rims,
-                            .reflections = {sent(std::span<const int>(way.reflections)), way.reflections.size()},
-                            .mirrors = way.mirrors},
-                    .rays = sent(rays),
-                    .wavelength = sent(wavelengths),
-                    .events = events_.there,
-                    .event_counts = counts_.there,
-                    .ends = ends_.there,
-                    .most_events = static_cast<int>(most_events_)},
-        static_cast<int>(rays.size()));
+    buffer_.queue().run(EventJob<T>{.lens = lens.view(),
+                                    .way = {.direction = way.direction,
+                                            .rims = way.rims,
+                                            .reflections = {buffer_.send(std::span<const int>(way.reflections)),
+                                                            way.reflections.size()},
+                                            .mirrors = way.mirrors},
+                                    .rays = buffer_.send(rays),
+                                    .wavelength = buffer_.send(wavelengths),
+                                    .events = events_.there,
+                                    .event_counts = counts_.there,
+                                    .ends = ends_.there,
+                                    .most_events = static_cast<int>(most_events_)},
+                        static_cast<int>(rays.size()));
     buffer_.download(events_, rays.size() * most_events_);
     buffer_.download(counts_, rays.size());
     buffer_.download(ends_, rays.size());

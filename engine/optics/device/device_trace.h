@@ -25,8 +25,8 @@ class ColumnTracer {
 
     /// `device`: null will do. Both outlive this. `piece`: a power of two, of 16 or more.
     ColumnTracer(const SpectralLens<T>& lens, device::SharedDevice* device, std::size_t piece = kUsualPiece);
-    ColumnTracer(ColumnTracer&&) noexcept;
-    ColumnTracer& operator=(ColumnTracer&&) noexcept;
+    ColumnTracer(const ColumnTracer&) = delete;
+    ColumnTracer& operator=(const ColumnTracer&) = delete;
     ~ColumnTracer();
 
     /// Whether a device does it: then many rays at a time are better than few.
@@ -38,10 +38,9 @@ class ColumnTracer {
   private:
     class Piece;
 
-    /// As many of the rays as it could before the device failed, from the first on: all.
+    /// Returns how many of them, from the first on, it did: all, or those before the device failed.
     template <Direction direction>
     std::size_t trace_on_device(const RayColumns<T>& rays, const BatchSettings& settings);
-    void fall_back(const std::string& why);
 
     const SpectralLens<T>* lens_;
     device::SharedDevice* device_;

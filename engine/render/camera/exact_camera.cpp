@@ -45,7 +45,7 @@ void ExactCamera::put_on_device() {
             on_device_.emplace(std::in_place_type<DeviceCamera<double>>, device_->device(), lens_, slices_);
         }
     } catch (const device::Error& error) {
-        device_->fail(error.what());
+        device_->refuse(error.what());
     }
 }
 

@@ -458,8 +458,8 @@ TEST(Ghosts, AreTheSameWhereADeviceFails) {
     int told = 1;
     for (int calls = 0; told > 0; calls += 5 + 4 * calls) {
         told = 0;
-        settings.device = std::make_shared<device::SharedDevice>(
-            device::Device::stand_in(calls), device::SharedDevice::Hear(), [&](const std::string& /*why*/) { ++told; });
+        const auto hear = [&](const std::string& /*why*/) { ++told; };
+        settings.device = std::make_shared<device::SharedDevice>(device::Device::stand_in(calls), hear, hear);
         EXPECT_EQ(numbers_of(survey_ghosts(lens, settings)), expected) << calls;
         EXPECT_LE(told, 1);
         ASSERT_LT(calls, 10000000);
