@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <fstream>
@@ -24,7 +25,6 @@ namespace {
 
 // No text, table or photo comes near; /dev/zero would go on for ever.
 constexpr std::size_t kLargestFile = std::size_t{256} << 20;
-constexpr std::size_t kChunk = std::size_t{1} << 20;
 
 /// Links followed, as far as there are such files.
 fs::path place_of(const fs::path& file) {
@@ -67,20 +67,18 @@ std::string read_file(const fs::path& file) {
     // Not blocking: a pipe that nobody writes to then has its end at once, and one whose writer is slow says so.
     const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     std::string content;
+    std::array<char, std::size_t{64} << 10> chunk{};
     ssize_t count = descriptor == -1 ? -1 : 1;
     while (count > 0) {
-        const std::size_t before = content.size();
-        if (before > kLargestFile) {
+        if (content.size() > kLargestFile) {
             ::close(descriptor);
             throw InputError(fmt::format("{}: is larger than 256 MiB, expected a smaller file", file.string()));
         }
-        content.resize(before + kChunk);
-        while ((count = ::read(descriptor, content.data() + before, kChunk)) == -1 &&
-               (errno == EAGAIN || errno == EINTR)) {
+        while ((count = ::read(descriptor, chunk.data(), chunk.size())) == -1 && (errno == EAGAIN || errno == EINTR)) {
             pollfd more{.fd = descriptor, .events = POLLIN, .revents = 0};
             ::poll(&more, 1, -1);
         }
-        content.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+        content.append(chunk.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     }
     if (descriptor != -1) {
         ::close(descriptor);

@@ -160,8 +160,7 @@ std::vector<GlassSuggestion> suggestions_for(const AskedName& asked, std::span<c
 }  // namespace
 
 void GlassCatalogue::add(std::vector<Glass> glasses) {
-    std::ranges::move(glasses_, std::back_inserter(glasses));
-    glasses_ = std::move(glasses);
+    glasses_.insert(glasses_.begin(), std::make_move_iterator(glasses.begin()), std::make_move_iterator(glasses.end()));
 }
 
 GlassMatch GlassCatalogue::resolve(std::string_view name, std::span<const std::string> preferred_catalogues) const {

@@ -29,9 +29,7 @@ std::filesystem::path transmittance_file(const char* table) {
     return glass_folder() / "transmittance" / fmt::format("{}.csv", table);
 }
 
-}  // namespace
-
-optics::GlassCatalogue shipped_glasses() {
+optics::GlassCatalogue read_shipped_glasses() {
     std::vector<optics::Glass> glasses;
     for (const std::filesystem::path& file : shipped_glass_files()) {
         std::ranges::move(parse_glass_table(read_file(file), file).glasses, std::back_inserter(glasses));
@@ -39,6 +37,13 @@ optics::GlassCatalogue shipped_glasses() {
     optics::GlassCatalogue catalogue;
     catalogue.add(std::move(glasses));
     return catalogue;
+}
+
+}  // namespace
+
+const optics::GlassCatalogue& shipped_glasses() {
+    static const optics::GlassCatalogue glasses = read_shipped_glasses();
+    return glasses;
 }
 
 std::vector<std::filesystem::path> shipped_glass_files() {

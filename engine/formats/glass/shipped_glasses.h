@@ -7,8 +7,8 @@
 
 namespace lensproof::formats {
 
-/// All that ship. Throws InputError naming file and line of an entry that is unusable.
-optics::GlassCatalogue shipped_glasses();
+/// All that ship, read once. Throws InputError naming file and line of an entry that is unusable.
+const optics::GlassCatalogue& shipped_glasses();
 
 /// The files that `shipped_glasses` reads: among the inputs of whatever is computed with them.
 std::vector<std::filesystem::path> shipped_glass_files();

@@ -51,11 +51,6 @@ spectral::ComplexIndex named_metal(std::string name) {
     return spectral::metal(symbol != kBySymbol.end() ? symbol->second : name);
 }
 
-const optics::GlassCatalogue& catalogue() {
-    static const optics::GlassCatalogue shipped = formats::shipped_glasses();
-    return shipped;
-}
-
 /// What a glass's formula gives, where it holds.
 double index_of(const optics::Glass& glass, double nm) {
     if (!optics::covers(glass, nm)) {
@@ -66,7 +61,7 @@ double index_of(const optics::Glass& glass, double nm) {
 }
 
 optics::Glass named_glass(const std::string& name) {
-    const optics::GlassMatch match = catalogue().resolve(name);
+    const optics::GlassMatch match = formats::shipped_glasses().resolve(name);
     if (match.glass) {
         return *match.glass;
     }

@@ -115,8 +115,7 @@ StabilityCase wavelength_case(double wavelength_nm, std::mt19937_64& random) {
                                                          {.radius = -130.0, .thickness = 95.0}});
     prescription.surfaces[1].medium.glass = "N-BK7";
     prescription.surfaces[2].medium.glass = "F2";
-    static const optics::GlassCatalogue kGlasses = formats::shipped_glasses();
-    return {optics::at_wavelength<double>(optics::make_lens(prescription, kGlasses), wavelength_nm),
+    return {optics::at_wavelength<double>(optics::make_lens(prescription, formats::shipped_glasses()), wavelength_nm),
             random_rays(10.0, 0.1, random)};
 }
 
