@@ -12,7 +12,7 @@
 namespace lensproof {
 
 void use(const optics::Prescription& prescription) {
-    static const optics::GlassCatalogue glasses = formats::shipped_glasses();
+    const optics::GlassCatalogue& glasses = formats::shipped_glasses();
     check::check_prescription(prescription, {}, glasses, {});
     try {
         const optics::Lens lens = optics::make_lens(prescription, glasses);

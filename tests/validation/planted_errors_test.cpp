@@ -428,7 +428,7 @@ struct Tally {
 };
 
 TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
-    const optics::GlassCatalogue glasses = formats::shipped_glasses();
+    const optics::GlassCatalogue& glasses = formats::shipped_glasses();
     std::map<std::string, Tally> tallies;
     Tally total;
     std::size_t lenses = 0;

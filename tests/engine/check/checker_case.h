@@ -15,7 +15,7 @@ namespace lensproof::check {
 
 inline CheckReport checked(const optics::Prescription& prescription, const optics::StatedData& claims = {},
                            const CheckSettings& settings = {}) {
-    static const optics::GlassCatalogue shipped = formats::shipped_glasses();
+    const optics::GlassCatalogue& shipped = formats::shipped_glasses();
     return check_prescription(prescription, claims, shipped, settings);
 }
 

@@ -199,7 +199,7 @@ TEST(CheckerValues, AShortTableOfIndicesIsNamedByItsFirstGap) {
 }
 
 TEST(CheckerValues, NothingIsComputedWhereAGlassHasNoIndex) {
-    const optics::GlassCatalogue glasses = formats::shipped_glasses();
+    const optics::GlassCatalogue& glasses = formats::shipped_glasses();
     const optics::Prescription lens = tessar();
     CheckSettings settings{.wavelength_nm = 200.0, .indices = {}, .zoom_position = {}};
     const CheckReport report = check_prescription(lens, {}, glasses, settings);

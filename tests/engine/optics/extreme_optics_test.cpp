@@ -73,7 +73,7 @@ TEST(ConvertLens, KeepsEveryNumberAndFormsTheRestAnew) {
 // too.
 TEST(ExtremeOptics, GlassFormulasHoldAtTheEndsOfTheirRanges) {
     int sellmeier = 0;
-    const GlassCatalogue catalogue = formats::shipped_glasses();
+    const GlassCatalogue& catalogue = formats::shipped_glasses();
     for (const Glass& glass : catalogue.glasses()) {
         for (const double nm : {glass.min_wavelength_nm, glass.max_wavelength_nm}) {
             const double index = refractive_index(glass.formula, nm);

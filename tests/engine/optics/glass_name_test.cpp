@@ -14,7 +14,7 @@
 namespace lensproof::optics::glass_name_test {
 
 const GlassCatalogue& shipped() {
-    static const GlassCatalogue catalogue = formats::shipped_glasses();
+    const GlassCatalogue& catalogue = formats::shipped_glasses();
     return catalogue;
 }
 

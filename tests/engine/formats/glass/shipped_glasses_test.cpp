@@ -16,7 +16,7 @@
 namespace lensproof::formats::shipped_glasses_test {
 
 const optics::GlassCatalogue& shipped() {
-    static const optics::GlassCatalogue catalogue = shipped_glasses();
+    const optics::GlassCatalogue& catalogue = shipped_glasses();
     return catalogue;
 }
 
@@ -157,7 +157,7 @@ TEST(Air, WavelengthsGoToVacuumAndBack) {
 // The start of every program that needs glass. A hundred times what it takes, for slow machines and sanitizers.
 TEST(Glass, AreReadWithinAnInstant) {
     const auto start = std::chrono::steady_clock::now();
-    const optics::GlassCatalogue catalogue = shipped_glasses();
+    const optics::GlassCatalogue& catalogue = shipped_glasses();
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     RecordProperty("milliseconds", std::to_string(1e3 * took.count()));
     EXPECT_LT(took.count(), 1.0);

@@ -77,7 +77,7 @@ inline const std::vector<double> kColours = {spectral::kLineF, spectral::kLineD,
 /// At each of the wavelengths every ray meets every surface at the same point to 1e-9 mm.
 inline void expect_same_rays(const optics::Prescription& expected, const optics::Prescription& found,
                              const std::vector<double>& wavelengths_nm = kColours) {
-    static const optics::GlassCatalogue glasses = shipped_glasses();
+    const optics::GlassCatalogue& glasses = shipped_glasses();
     const optics::Lens first = optics::make_lens(expected, glasses);
     const optics::Lens second = optics::make_lens(found, glasses);
     EXPECT_NEAR(first.image_z, second.image_z, 1e-10);

@@ -16,7 +16,7 @@ namespace lensproof::formats::shipped_coatings_test {
 
 /// Reflectance on glass of index 1.5185 (N-BK7 at 550 nm) at normal incidence, from the glass or from air.
 double reflectance(const std::string& name, double nm, bool from_glass = false) {
-    static const optics::GlassCatalogue glasses = shipped_glasses();
+    const optics::GlassCatalogue& glasses = shipped_glasses();
     const optics::Glass air = optics::constant_glass("air", 1.0);
     const optics::Glass glass = *glasses.resolve("SCHOTT N-BK7").glass;
     const double n = optics::refractive_index(glass.formula, nm);
