@@ -15,8 +15,7 @@ namespace lensproof::check {
 
 inline CheckReport checked(const optics::Prescription& prescription, const optics::StatedData& claims = {},
                            const CheckSettings& settings = {}) {
-    const optics::GlassCatalogue& shipped = formats::shipped_glasses();
-    return check_prescription(prescription, claims, shipped, settings);
+    return check_prescription(prescription, claims, formats::shipped_glasses(), settings);
 }
 
 /// The first finding of that code, at that surface where one is given; else null.

@@ -13,18 +13,13 @@
 
 namespace lensproof::optics::glass_name_test {
 
-const GlassCatalogue& shipped() {
-    const GlassCatalogue& catalogue = formats::shipped_glasses();
-    return catalogue;
-}
-
 std::string meaning(std::string_view name, const std::vector<std::string>& preferred = {}) {
-    const GlassMatch match = shipped().resolve(name, preferred);
+    const GlassMatch match = formats::shipped_glasses().resolve(name, preferred);
     return match.glass ? match.glass->catalogue + " " + match.glass->name : "";
 }
 
 bool suggests(std::string_view name, const std::string& glass) {
-    const GlassMatch match = shipped().resolve(name);
+    const GlassMatch match = formats::shipped_glasses().resolve(name);
     return !match.glass && std::ranges::any_of(match.suggestions, [&](const auto& s) { return s.name == glass; });
 }
 
@@ -61,21 +56,21 @@ TEST(GlassName, NeverBecomesAnotherGlassSilently) {
     EXPECT_TRUE(suggests("N-BK8", "BK8"));
     EXPECT_TRUE(suggests("S-BLS7", "S-BSL7"));
     EXPECT_TRUE(suggests("517642", "N-BK7"));
-    EXPECT_TRUE(shipped().resolve("UNOBTAINIUM").suggestions.empty());
+    EXPECT_TRUE(formats::shipped_glasses().resolve("UNOBTAINIUM").suggestions.empty());
 }
 
 TEST(GlassName, InSeveralCataloguesGoesToThePreferredOneAndSaysSo) {
-    const GlassMatch match = shipped().resolve("LAK9");
+    const GlassMatch match = formats::shipped_glasses().resolve("LAK9");
     EXPECT_EQ(match.how, GlassMatch::How::exact);
     EXPECT_EQ(match.also_in, std::vector<std::string>{"HIKARI"});
     EXPECT_EQ(meaning("LAK9", {"OHARA", "HIKARI"}), "HIKARI LAK9");
     EXPECT_EQ(meaning("LAK9", {"OHARA"}), "SCHOTT LAK9");
-    EXPECT_EQ(shipped().resolve("NLAK9").how, GlassMatch::How::spelled_differently);
-    EXPECT_TRUE(shipped().resolve("N-BK7").also_in.empty());
+    EXPECT_EQ(formats::shipped_glasses().resolve("NLAK9").how, GlassMatch::How::spelled_differently);
+    EXPECT_TRUE(formats::shipped_glasses().resolve("N-BK7").also_in.empty());
 }
 
 TEST(GlassName, OfAGlassThatTheUserBroughtComesFirst) {
-    GlassCatalogue catalogue = shipped();
+    GlassCatalogue catalogue = formats::shipped_glasses();
     Glass mine;
     mine.name = "BK7";
     mine.catalogue = "MINE";
@@ -90,8 +85,8 @@ TEST(GlassName, OfAGlassThatTheUserBroughtComesFirst) {
 
 // Every glass answers to its own name, and with hyphens and case aside it is still that glass.
 TEST(GlassName, EveryShippedNameMeansItsGlass) {
-    for (const Glass& glass : shipped().glasses()) {
-        const GlassMatch match = shipped().resolve(glass.name + "_" + glass.catalogue);
+    for (const Glass& glass : formats::shipped_glasses().glasses()) {
+        const GlassMatch match = formats::shipped_glasses().resolve(glass.name + "_" + glass.catalogue);
         ASSERT_TRUE(match.glass) << glass.name;
         EXPECT_EQ(match.glass->name, glass.name);
         EXPECT_EQ(match.glass->catalogue, glass.catalogue);
@@ -99,12 +94,13 @@ TEST(GlassName, EveryShippedNameMeansItsGlass) {
 }
 
 TEST(GlassName, NearestGlassesHaveNearFigures) {
-    const std::vector<Glass> nearest = shipped().nearest(1.62041, 60.32, 3);
+    const std::vector<Glass> nearest = formats::shipped_glasses().nearest(1.62041, 60.32, 3);
     ASSERT_EQ(nearest.size(), 3U);
     for (const Glass& glass : nearest) {
         EXPECT_NEAR(refractive_index(glass.formula, spectral::kLineD), 1.62041, 1e-3) << glass.name;
     }
-    EXPECT_EQ(shipped().nearest(1.5, 60.0, 100000).size(), shipped().glasses().size());
+    EXPECT_EQ(formats::shipped_glasses().nearest(1.5, 60.0, 100000).size(),
+              formats::shipped_glasses().glasses().size());
 }
 
 TEST(GlassCode, GivesIndexAndAbbeNumber) {
