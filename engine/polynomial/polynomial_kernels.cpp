@@ -2,9 +2,8 @@
 
 namespace lensproof::polynomial {
 
-const PolynomialKernels& polynomial_kernels(std::optional<optics::SimdLevel> level) {
-    using optics::SimdLevel;
-    static const optics::LoopsByLevel<PolynomialKernels> found{
+const PolynomialKernels& polynomial_kernels(std::optional<SimdLevel> level) {
+    static const LoopsByLevel<PolynomialKernels> found{
         {SimdLevel::scalar, scalar_polynomial_kernels},
         {SimdLevel::baseline, baseline_polynomial_kernels},
 #ifdef LENSPROOF_X86_KERNELS

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/base/simd_level.h"
 #include "engine/optics/packet/ray_batch.h"
-#include "engine/optics/packet/simd_level.h"
 #include "engine/polynomial/symmetric_map.h"
 
 namespace lensproof::polynomial {
@@ -41,7 +41,7 @@ struct PolynomialKernels {
 };
 
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
-const PolynomialKernels& polynomial_kernels(std::optional<optics::SimdLevel> level = {});
+const PolynomialKernels& polynomial_kernels(std::optional<SimdLevel> level = {});
 
 PolynomialKernels scalar_polynomial_kernels();
 PolynomialKernels baseline_polynomial_kernels();

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "engine/pupil/disc.h"
+#include "engine/base/disc.h"
 #include "engine/pupil/pupil_region.h"
 #include "engine/pupil/pupil_stations.h"
 

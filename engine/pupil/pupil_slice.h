@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdint>
 
+#include "engine/base/disc.h"
 #include "engine/base/look_up.h"
 #include "engine/base/select.h"
-#include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_panel.h"
 
 namespace lensproof::pupil {

@@ -5,8 +5,8 @@
 #include <tuple>
 #include <vector>
 
+#include "engine/base/disc.h"
 #include "engine/optics/device/device_trace.h"
-#include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_outline.h"
 
 namespace lensproof::pupil {

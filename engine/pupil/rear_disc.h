@@ -1,7 +1,7 @@
 // engine/pupil/rear_disc.h — a disc behind a lens that every path from the sensor into the lens crosses.
 #pragma once
+#include "engine/base/disc.h"
 #include "engine/optics/trace.h"
-#include "engine/pupil/disc.h"
 
 namespace lensproof::pupil {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/pupil/disc.h"
+#include "engine/base/disc.h"
 #include "engine/pupil/pupil_guides.h"
 
 namespace lensproof::pupil {

@@ -32,7 +32,7 @@ void time_points_one_by_one(benchmark::State& state) {
 }
 
 /// As camera paths take them: in columns, film positions included.
-void time_points_in_columns(benchmark::State& state, optics::SimdLevel level) {
+void time_points_in_columns(benchmark::State& state, SimdLevel level) {
     const render::PathSampling sampling{
         .sensor = {.width = 64, .height = 48, .pixel_pitch_mm = 0.01}, .seed = 0, .wavelengths = kSamples};
     const auto starts = std::make_unique<render::PathStarts>();
@@ -79,7 +79,7 @@ class PathScene {
     [[nodiscard]] const pupil::PupilMap& pupil() const { return pupil_; }
 
     [[nodiscard]] const optics::SpectralLens<double>& lens() const { return lens_; }
-    [[nodiscard]] render::LensPaths paths(optics::SimdLevel level) const {
+    [[nodiscard]] render::LensPaths paths(SimdLevel level) const {
         return {{.sensor = sensor_}, lens_, slices_, level};
     }
 
@@ -143,7 +143,7 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
     count_paths(state, valid, started);
 }
 
-void time_buffers(benchmark::State& state, const Setting& setting, optics::SimdLevel level, Consumer consumer) {
+void time_buffers(benchmark::State& state, const Setting& setting, SimdLevel level, Consumer consumer) {
     const PathScene scene(setting);
     render::LensPaths producer = scene.paths(level);
     render::CameraPathBuffer paths;
@@ -197,7 +197,7 @@ void time_set_up(benchmark::State& state, const Setting& setting) {
 }
 
 void register_camera_paths(const Setting& setting, Consumer consumer) {
-    const optics::SimdLevel widest = optics::available_simd_levels().back();
+    const SimdLevel widest = available_simd_levels().back();
     const auto add = [&](const char* technique, auto run) {
         benchmark::RegisterBenchmark(
             fmt::format("camera_paths/{}/{}{}", setting.lens, technique, consumer == Consumer::chart ? "/chart" : "")
@@ -206,8 +206,7 @@ void register_camera_paths(const Setting& setting, Consumer consumer) {
             ->Unit(benchmark::kMillisecond);
     };
     add("one_by_one", [=](benchmark::State& state) { time_one_by_one(state, setting, consumer); });
-    add("buffers/scalar",
-        [=](benchmark::State& state) { time_buffers(state, setting, optics::SimdLevel::scalar, consumer); });
+    add("buffers/scalar", [=](benchmark::State& state) { time_buffers(state, setting, SimdLevel::scalar, consumer); });
     add("buffers/double", [=](benchmark::State& state) { time_buffers(state, setting, widest, consumer); });
 }
 
@@ -215,8 +214,8 @@ void register_camera_paths(const Setting& setting, Consumer consumer) {
 
 void register_camera_path_benchmarks() {
     benchmark::RegisterBenchmark("sampler/points/one_by_one", time_points_one_by_one);
-    for (const optics::SimdLevel level : optics::available_simd_levels()) {
-        benchmark::RegisterBenchmark(fmt::format("sampler/points/{}", optics::simd_name(level)).c_str(),
+    for (const SimdLevel level : available_simd_levels()) {
+        benchmark::RegisterBenchmark(fmt::format("sampler/points/{}", simd_name(level)).c_str(),
                                      [level](benchmark::State& state) { time_points_in_columns(state, level); });
     }
     for (const std::string& name : render::lens_model_names()) {

@@ -51,7 +51,7 @@ void count(benchmark::State& state, std::size_t surfaces) {
 
 /// The batch tracer at one level; `wavelengths` of them, so that one is a broadcast and more are looked up.
 template <class T>
-void time_batch(benchmark::State& state, const std::string& name, optics::SimdLevel level, optics::Carry carry,
+void time_batch(benchmark::State& state, const std::string& name, SimdLevel level, optics::Carry carry,
                 int wavelengths) {
     const optics::Lens lens = formats::load_lens(name);
     const std::vector<Ray<double>> rays = passing_rays(lens, optics::Direction::reverse);
@@ -194,12 +194,12 @@ constexpr std::array kBatchLenses = {"tessar",       "petzval",       "double-ga
 
 template <class T>
 void register_batches(const std::string& lens, const std::string& type) {
-    const auto add = [&](optics::SimdLevel level, const std::string& what, optics::Carry carry, int wavelengths) {
+    const auto add = [&](SimdLevel level, const std::string& what, optics::Carry carry, int wavelengths) {
         benchmark::RegisterBenchmark(
-            batch_name(lens, type + "/" + optics::simd_name(level) + "/" + what).c_str(),
+            batch_name(lens, type + "/" + simd_name(level) + "/" + what).c_str(),
             [=](benchmark::State& state) { time_batch<T>(state, lens, level, carry, wavelengths); });
     };
-    for (const optics::SimdLevel level : optics::available_simd_levels()) {
+    for (const SimdLevel level : available_simd_levels()) {
         add(level, "geometry", optics::Carry::geometry, 1);
         add(level, "fresnel", optics::Carry::transmittance, 1);
         add(level, "fresnel_64_wavelengths", optics::Carry::transmittance, 64);

@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
+#include "engine/base/simd_level.h"
 #include "engine/optics/ghost_path.h"
-#include "engine/optics/packet/simd_level.h"
 #include "engine/optics/packet/spectral_lens.h"
 
 namespace lensproof::optics {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/simd_level.h"
 #include "engine/optics/packet/ray_batch.h"
-#include "engine/optics/packet/simd_level.h"
 #include "engine/optics/packet/spectral_lens.h"
 
 namespace lensproof::optics {

@@ -33,7 +33,7 @@ Vec2d path_pixel(const CameraPathBuffer& paths, std::size_t path, const Sensor& 
     return {std::floor(at.x + 0.5), std::floor(at.y + 0.5)};
 }
 
-FilmSamples::FilmSamples(FilmSampling film, int wavelengths, std::optional<optics::SimdLevel> level)
+FilmSamples::FilmSamples(FilmSampling film, int wavelengths, std::optional<SimdLevel> level)
     : sampling_{.sensor = film.sensor, .seed = film.seed, .wavelengths = wavelengths},
       filter_(std::move(film.filter)),
       kernels_(&path_kernels(level)) {}

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/simd_level.h"
 #include "engine/optics/packet/ray_batch.h"
-#include "engine/optics/packet/simd_level.h"
 #include "engine/render/camera/film_importance.h"
 #include "engine/render/camera/packet/path_kernels.h"
 #include "engine/render/sampling/pixel_filter.h"
@@ -77,7 +77,7 @@ struct FilmSampling {
 class FilmSamples {
   public:
     /// `level`: of the packets, as `trace_batch` has it.
-    FilmSamples(FilmSampling film, int wavelengths, std::optional<optics::SimdLevel> level = {});
+    FilmSamples(FilmSampling film, int wavelengths, std::optional<SimdLevel> level = {});
 
     /// Begins a range, at its `skipped`-th sample. What was left of the one before is dropped.
     void start(const CameraPathRange& range, std::uint64_t skipped = 0);

@@ -71,7 +71,7 @@ void normalize_directions(CameraPathBuffer& buffer, int first) {
 
 template <class T>
 BasicLensPaths<T>::BasicLensPaths(FilmSampling film, const optics::SpectralLens<T>& lens,
-                                  const pupil::PupilSlices& pupil, std::optional<optics::SimdLevel> level)
+                                  const pupil::PupilSlices& pupil, std::optional<SimdLevel> level)
     : samples_(std::move(film), lens.wavelengths(), level),
       lens_(&lens),
       pupil_(&pupil),

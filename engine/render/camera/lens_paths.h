@@ -18,7 +18,7 @@ class BasicLensPaths {
     /// `lens` at the wavelengths that samples spread evenly over, `pupil` at those too; both outlive this. `level`:
     /// that of `trace_batch`.
     BasicLensPaths(FilmSampling film, const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil,
-                   std::optional<optics::SimdLevel> level = {});
+                   std::optional<SimdLevel> level = {});
 
     /// As `FilmSamples` has them.
     void start(const CameraPathRange& range, std::uint64_t skipped = 0) { samples_.start(range, skipped); }

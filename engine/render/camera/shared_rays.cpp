@@ -16,7 +16,7 @@ FilmMeeting meet_film(const pupil::PupilSlices& pupil, double film_z, int slice,
 template <class T>
 BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
                                     const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box,
-                                    std::optional<optics::SimdLevel> level)
+                                    std::optional<SimdLevel> level)
     : grid_(grid),
       lens_(&lens),
       pupil_(&pupil),

@@ -40,7 +40,7 @@ class BasicSharedRays {
     /// `trace_batch`.
     BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
                     const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box,
-                    std::optional<optics::SimdLevel> level = {});
+                    std::optional<SimdLevel> level = {});
 
     /// Of paths out of a BasicLensPaths. Writes w of its four wavelengths to every path of the buffer, and the pdfs
     /// that it was drawn with: ¼ Σ_m p_m, and p of the hero.

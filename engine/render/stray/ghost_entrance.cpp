@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/base/angle.h"
+#include "engine/base/disc.h"
 #include "engine/optics/packet/ghost_lanes.h"
 
 namespace lensproof::render {
@@ -11,15 +11,6 @@ namespace lensproof::render {
 namespace {
 
 constexpr double kUnguided = 0.2;  // the share of rays
-
-double disc_area(const pupil::EntranceBeam& beam) {
-    return kPi * beam.radius * beam.radius;
-}
-
-Vec2d in_disc(const pupil::EntranceBeam& beam, double u, double v) {
-    const double r = beam.radius * std::sqrt(u);
-    return {r * std::cos(2.0 * kPi * v), r * std::sin(2.0 * kPi * v)};
-}
 
 }  // namespace
 
@@ -36,18 +27,19 @@ std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceB
     }
     const auto u = numbers.next();
     const auto ghosts = static_cast<double>(guide_->paths().size());
+    const Disc disc{beam.radius};
     const double unguided = guide_->is_known() ? kUnguided : 1.0;
     GhostGuide::Draw drawn;
     if (u[3] < unguided) {
-        drawn = {.ghost = static_cast<std::size_t>(u[0] * ghosts), .offset = in_disc(beam, u[1], u[2])};
+        drawn = {.ghost = static_cast<std::size_t>(u[0] * ghosts), .offset = disc.warped(u[1], u[2])};
     } else if (const auto guided = guide_->draw(beam, {u[0], u[1], u[2]})) {
         drawn = *guided;
     } else {
         return std::nullopt;
     }
     const double guided_pdf = of_beam ? guide_->pdf(beam, drawn) : guide_->probability(beam, drawn.ghost);
-    const bool is_in_disc = !of_beam || length(drawn.offset) <= beam.radius;
-    const double even_pdf = is_in_disc ? 1.0 / (ghosts * (of_beam ? disc_area(beam) : 1.0)) : 0.0;
+    const bool is_in_disc = !of_beam || disc.contains(drawn.offset);
+    const double even_pdf = is_in_disc ? 1.0 / (ghosts * (of_beam ? disc.area() : 1.0)) : 0.0;
     return Way{guide_->paths()[drawn.ghost], drawn.offset, (1.0 - unguided) * guided_pdf + unguided * even_pdf};
 }
 

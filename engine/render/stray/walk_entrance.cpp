@@ -1,6 +1,6 @@
 #include "engine/render/stray/walk_entrance.h"
 
-#include "engine/pupil/disc.h"
+#include "engine/base/disc.h"
 #include "engine/render/stray/walk_numbers.h"
 
 namespace lensproof::render {
@@ -31,7 +31,7 @@ std::optional<Entry> WalkEntrance::draw(const LightOrigin& from, const spectral:
     if (!beam || is_dark(ways_, barrel_)) {
         return std::nullopt;
     }
-    const pupil::Disc disc{beam->radius};
+    const Disc disc{beam->radius};
     const Vec2d offset = disc.warped(u[0], u[1]);
     return landed(front_.entry(from, *beam, offset, 1.0 / disc.area()), beam->ray(offset), path, u);
 }

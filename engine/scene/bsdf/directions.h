@@ -2,8 +2,8 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/disc.h"
 #include "engine/base/vec.h"
 
 namespace lensproof::scene {
@@ -26,9 +26,8 @@ inline Vec3d on_side_of(const Vec3d& side, const Vec3d& upward) {
 /// A direction of z > 0 with the pdf z / π per solid angle, from u1, u2 in (0, 1): a point of the unit disc, lifted
 /// onto the hemisphere (Malley).
 inline Vec3d cosine_direction(double u1, double u2) {
-    const double radius = std::sqrt(u1);
-    const double angle = 2.0 * std::numbers::pi * u2;
-    return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(0.0, 1.0 - u1))};
+    const Vec2d at = Disc{1.0}.warped(u1, u2);
+    return {at.x, at.y, std::sqrt(std::max(0.0, 1.0 - dot(at, at)))};
 }
 
 }  // namespace lensproof::scene

@@ -8,6 +8,7 @@
 
 #include "engine/base/angle.h"
 #include "engine/base/basis.h"
+#include "engine/base/disc.h"
 #include "engine/base/infinity.h"
 #include "engine/base/overloaded.h"
 #include "engine/scene/bsdf/directions.h"
@@ -15,12 +16,6 @@
 namespace lensproof::scene {
 
 namespace {
-
-/// A point of the disc of radius 1, evenly.
-Vec2d in_disc(double u1, double u2) {
-    const double radius = std::sqrt(u1);
-    return {radius * std::cos(2.0 * kPi * u2), radius * std::sin(2.0 * kPi * u2)};
-}
 
 std::optional<LightSample> sample_point(const LightAtPoint auto& light, const Vec3d& seen_from,
                                         const spectral::PathWavelengths& path) {
@@ -280,25 +275,24 @@ spectral::SpectralSample Lights::intensity(const LightStart& start, const Vec3d&
 
 EmittedRay Lights::leave(const LightStart& start, double u1, double u2) const {
     return std::visit(
-        Overloaded{
-            [&](const AreaLight&) -> EmittedRay {
-                // With the pdf cos / π.
-                const Vec3d direction = Basis(start.normal).to_world(cosine_direction(u1, u2));
-                return {{ray_origin(start.point, start.normal, start.error_mm, direction), direction},
-                        scaled(start.value, kPi)};
-            },
-            [&](const LightAtPoint auto& light) -> EmittedRay {
-                const Vec3d direction = light.draw(u1, u2);
-                return {{start.point, direction},
-                        scaled(scaled(start.value, light.falloff(direction)), light.cone_sr())};
-            },
-            [&](const LightAtInfinity auto& /*sky*/) -> EmittedRay {
-                // It crosses a disc in front of the scene, at right angles to its direction.
-                const Vec2d at = in_disc(u1, u2);
-                const Vec3d origin = centre_ + radius_mm_ * Basis(-1.0 * start.direction).to_world({at.x, at.y, 1.0});
-                const double area = kPi * radius_mm_ * radius_mm_ * kSquareMetresPerSquareMm;
-                return {{origin, start.direction}, scaled(start.value, area)};
-            }},
+        Overloaded{[&](const AreaLight&) -> EmittedRay {
+                       // With the pdf cos / π.
+                       const Vec3d direction = Basis(start.normal).to_world(cosine_direction(u1, u2));
+                       return {{ray_origin(start.point, start.normal, start.error_mm, direction), direction},
+                               scaled(start.value, kPi)};
+                   },
+                   [&](const LightAtPoint auto& light) -> EmittedRay {
+                       const Vec3d direction = light.draw(u1, u2);
+                       return {{start.point, direction},
+                               scaled(scaled(start.value, light.falloff(direction)), light.cone_sr())};
+                   },
+                   [&](const LightAtInfinity auto& /*sky*/) -> EmittedRay {
+                       // It crosses a disc in front of the scene, at right angles to its direction.
+                       const Disc disc{radius_mm_};
+                       const Vec2d at = disc.warped(u1, u2);
+                       const Vec3d origin = centre_ + Basis(-1.0 * start.direction).to_world({at.x, at.y, radius_mm_});
+                       return {{origin, start.direction}, scaled(start.value, disc.area() * kSquareMetresPerSquareMm)};
+                   }},
         lights_[start.light].light);
 }
 

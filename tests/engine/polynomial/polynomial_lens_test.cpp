@@ -181,15 +181,15 @@ TEST(PolynomialLens, PacketsAreTheRaysThemselves) {
     const FilmRays rays{columns[0].data(), columns[1].data(),  columns[2].data(),
                         columns[3].data(), wavelengths.data(), static_cast<int>(from.size())};
     optics::RayBatch<double> first(kColumn);
-    polynomial_kernels(optics::SimdLevel::scalar).find_exits(lens.tables(), rays, first);
-    for (const optics::SimdLevel level : optics::available_simd_levels()) {
+    polynomial_kernels(SimdLevel::scalar).find_exits(lens.tables(), rays, first);
+    for (const SimdLevel level : available_simd_levels()) {
         optics::RayBatch<double> found(kColumn);
         polynomial_kernels(level).find_exits(lens.tables(), rays, found);
         for (std::size_t i = 0; i < from.size(); ++i) {
             const int at = static_cast<int>(i);
-            EXPECT_EQ(found.ray(at).origin, first.ray(at).origin) << optics::simd_name(level);
-            EXPECT_EQ(found.ray(at).direction, first.ray(at).direction) << optics::simd_name(level);
-            EXPECT_EQ(found.transmittance[i], first.transmittance[i]) << optics::simd_name(level);
+            EXPECT_EQ(found.ray(at).origin, first.ray(at).origin) << simd_name(level);
+            EXPECT_EQ(found.ray(at).direction, first.ray(at).direction) << simd_name(level);
+            EXPECT_EQ(found.transmittance[i], first.transmittance[i]) << simd_name(level);
         }
     }
     for (std::size_t i = 0; i < from.size(); ++i) {

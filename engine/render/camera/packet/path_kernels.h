@@ -36,7 +36,7 @@ struct PathKernels {
 };
 
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
-const PathKernels& path_kernels(std::optional<optics::SimdLevel> level);
+const PathKernels& path_kernels(std::optional<SimdLevel> level);
 
 PathKernels scalar_path_kernels();
 PathKernels baseline_path_kernels();

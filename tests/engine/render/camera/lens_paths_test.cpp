@@ -44,7 +44,7 @@ Paths one_by_one(const TestCamera& camera, const CameraPathRange& range) {
     return found;
 }
 
-Paths through_buffers(const TestCamera& camera, const CameraPathRange& range, int capacity, optics::SimdLevel level) {
+Paths through_buffers(const TestCamera& camera, const CameraPathRange& range, int capacity, SimdLevel level) {
     return all_paths(LensPaths(camera.film, camera.lens, camera.slices, level), range, capacity);
 }
 
@@ -59,10 +59,10 @@ TEST(LensPaths, HaveTheBitsOfOneByOneInOrder) {
         EXPECT_LT(expected.started, 48 * 37) << "some of the film gets no light";
         EXPECT_LT(expected.valid.size(), static_cast<std::size_t>(expected.started)) << "the lens stops some paths";
         EXPECT_GT(expected.valid.size(), 48U * 37U / 3U) << "and passes many";
-        for (const optics::SimdLevel level : optics::available_simd_levels()) {
+        for (const SimdLevel level : available_simd_levels()) {
             for (const int capacity : {1, 5, 16, 100, 4096}) {
                 expect_same(through_buffers(camera, all, capacity, level), expected,
-                            fmt::format("{}, {}, capacity {}", name, optics::simd_name(level), capacity));
+                            fmt::format("{}, {}, capacity {}", name, simd_name(level), capacity));
             }
         }
     }
@@ -72,8 +72,7 @@ TEST(LensPaths, HaveTheBitsOfOneByOneInOrder) {
 TEST(LensPaths, DoNotDependOnTheRange) {
     const TestCamera camera("tessar", 70.0);
     const CameraPathRange part{.first_pixel = 19, .pixels = 5, .first_sample = 250, .samples = 12};
-    expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
-                "part");
+    expect_same(through_buffers(camera, part, 64, available_simd_levels().back()), one_by_one(camera, part), "part");
 }
 
 // As tiles are, of which rows are a part of the film's.
@@ -82,7 +81,7 @@ TEST(LensPaths, OfARectangleGoRowByRow) {
     const CameraPathRange tile{
         .first_pixel = 10, .pixels = 3, .first_sample = 7, .samples = 21, .rows = 4, .beside_row = 5};
     const Paths expected = one_by_one(camera, tile);
-    for (const optics::SimdLevel level : optics::available_simd_levels()) {
+    for (const SimdLevel level : available_simd_levels()) {
         for (const int capacity : {1, 16, 50, 4096}) {
             expect_same(through_buffers(camera, tile, capacity, level), expected, "tile");
         }
@@ -94,8 +93,7 @@ TEST(LensPaths, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
     const TestCamera camera("tessar", 30.0, false);
     const CameraPathRange part{.first_pixel = 0, .pixels = 48, .first_sample = 0, .samples = 3};
     ASSERT_EQ(camera.slices.tables(), nullptr);
-    expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
-                "turned");
+    expect_same(through_buffers(camera, part, 64, available_simd_levels().back()), one_by_one(camera, part), "turned");
 }
 
 // The top left pixel lies outside the fisheye's image circle: the few paths that the map starts there in defence all
@@ -103,14 +101,14 @@ TEST(LensPaths, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
 TEST(LensPaths, MayAllBeStopped) {
     const TestCamera camera("muller-fisheye", 40.0);
     const CameraPathRange corner{.pixels = 1, .samples = 4000};
-    const Paths paths = through_buffers(camera, corner, 64, optics::available_simd_levels().back());
+    const Paths paths = through_buffers(camera, corner, 64, available_simd_levels().back());
     EXPECT_TRUE(paths.valid.empty());
     EXPECT_GT(paths.started, 0);
 }
 
 TEST(LensPaths, OfNoSamplesOrPixelsAreNone) {
     const TestCamera camera("tessar", 70.0);
-    const optics::SimdLevel level = optics::available_simd_levels().back();
+    const SimdLevel level = available_simd_levels().back();
     EXPECT_TRUE(through_buffers(camera, {.pixels = 48, .samples = 0}, 64, level).valid.empty());
     EXPECT_TRUE(through_buffers(camera, {.pixels = 0, .samples = 16}, 64, level).valid.empty());
 }

@@ -42,7 +42,7 @@ struct Weighed {
 
 /// `use(paths)` with each buffer that was filled and weighed.
 template <class T, class Use>
-void for_each_buffer(const SharingCamera<T>& camera, int capacity, optics::SimdLevel level, const Use& use) {
+void for_each_buffer(const SharingCamera<T>& camera, int capacity, SimdLevel level, const Use& use) {
     BasicLensPaths<T> producer({.sensor = camera.sensor, .seed = 4}, camera.lens, camera.slices, level);
     BasicSharedRays<T> shared(camera.grid, camera.lens, camera.slices, camera.sensor, true, level);
     CameraPathBuffer paths(capacity);
@@ -55,7 +55,7 @@ void for_each_buffer(const SharingCamera<T>& camera, int capacity, optics::SimdL
 }
 
 template <class T>
-Weighed weighed(const SharingCamera<T>& camera, int capacity, optics::SimdLevel level) {
+Weighed weighed(const SharingCamera<T>& camera, int capacity, SimdLevel level) {
     Weighed found;
     for_each_buffer(camera, capacity, level, [&](const CameraPathBuffer& paths) {
         found.weights.insert(found.weights.end(), paths.weights.begin(), paths.weights.end());
@@ -69,12 +69,12 @@ Weighed weighed(const SharingCamera<T>& camera, int capacity, optics::SimdLevel 
 
 template <class T>
 void expect_the_same_bits(const SharingCamera<T>& camera, const std::string& name) {
-    const Weighed expected = weighed(camera, 4096, optics::SimdLevel::scalar);
+    const Weighed expected = weighed(camera, 4096, SimdLevel::scalar);
     EXPECT_GT(expected.weights.size(), 1000U) << name;
-    for (const optics::SimdLevel level : optics::available_simd_levels()) {
+    for (const SimdLevel level : available_simd_levels()) {
         for (const int capacity : {1, 5, 16, 100, 4096}) {
             EXPECT_TRUE(weighed(camera, capacity, level) == expected)
-                << fmt::format("{}, {}, capacity {}", name, optics::simd_name(level), capacity);
+                << fmt::format("{}, {}, capacity {}", name, simd_name(level), capacity);
         }
     }
 }
@@ -126,7 +126,7 @@ TEST(SharedRays, CountWhatEachRayByItselfDoes) {
         int paths_seen = 0;
         int others = 0;
         int beside = 0;
-        for_each_buffer(camera, 4096, optics::available_simd_levels().back(), [&](const CameraPathBuffer& paths) {
+        for_each_buffer(camera, 4096, available_simd_levels().back(), [&](const CameraPathBuffer& paths) {
             for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {
                 PathPdf drawn;
                 const auto expected = one_by_one(camera, paths, i, drawn);

@@ -1,4 +1,4 @@
-// engine/optics/packet/simd_level.h — how wide this machine's packets can be.
+// engine/base/simd_level.h — how wide this machine's packets can be.
 #pragma once
 #include <initializer_list>
 #include <map>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof::optics {
+namespace lensproof {
 
 /// How many lanes a packet has: one, or as many as a register of the named instructions holds.
 enum class SimdLevel {
@@ -55,4 +55,4 @@ class LoopsByLevel {
     std::map<SimdLevel, Loops> loops_;
 };
 
-}  // namespace lensproof::optics
+}  // namespace lensproof

@@ -1,8 +1,8 @@
-#include "engine/optics/packet/simd_level.h"
+#include "engine/base/simd_level.h"
 
 #include <array>
 
-namespace lensproof::optics {
+namespace lensproof {
 
 const char* simd_name(SimdLevel level) {
     constexpr std::array kNames = {"scalar", "baseline", "avx2", "avx512"};
@@ -12,7 +12,7 @@ const char* simd_name(SimdLevel level) {
 std::vector<SimdLevel> available_simd_levels() {
     std::vector<SimdLevel> levels{SimdLevel::scalar, SimdLevel::baseline};
 #ifdef LENSPROOF_X86_KERNELS
-    if (__builtin_cpu_supports("avx2")) {
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
         levels.push_back(SimdLevel::avx2);
     }
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
@@ -23,4 +23,4 @@ std::vector<SimdLevel> available_simd_levels() {
     return levels;
 }
 
-}  // namespace lensproof::optics
+}  // namespace lensproof

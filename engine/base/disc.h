@@ -1,11 +1,11 @@
-// engine/pupil/disc.h — a disc, and how to draw points evenly from it.
+// engine/base/disc.h — a disc, and how to draw points evenly from it.
 #pragma once
 #include <numbers>
 
 #include "engine/base/elementary.h"
 #include "engine/base/vec.h"
 
-namespace lensproof::pupil {
+namespace lensproof {
 
 /// A disc around the origin of its plane, mm.
 struct Disc {
@@ -32,4 +32,4 @@ struct Disc {
     }
 };
 
-}  // namespace lensproof::pupil
+}  // namespace lensproof
