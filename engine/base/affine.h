@@ -33,7 +33,7 @@ inline Vec3d transposed_times(const Matrix3& m, const Vec3d& v) {
 
 /// The largest of the coordinates, whatever their signs.
 inline double largest_coordinate(const Vec3d& v) {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
 /// X ↦ linear · X + translation; mm.

@@ -197,4 +197,41 @@ TEST(PathTracer, PrismSendsEachWavelengthWhereSnellSays) {
     }
 }
 
+// A path finds the same, to the bit, alone and among others: through glass that parts its wavelengths, mirrored, under
+// lamps and sky, with a number of paths that is no whole number of batches or packets.
+TEST(PathTracer, PathsFindTogetherWhatEachFindsAlone) {
+    SceneParts parts(kGrid);
+    parts.add(scene::Quad{1000.0, 1000.0}, {}, 0.5);
+    parts.add(scene::Sphere{20.0}, at(0.0, 0.0, 30.0),
+              {scene::dielectric_material(
+                  spectral::tabulated(kGrid, [](double nm) { return 1.5 + 13000.0 / (nm * nm); }), {0.0, 0.0})});
+    parts.add(scene::Sphere{20.0}, at(60.0, 0.0, 30.0),
+              {scene::plastic_material(spectral::constant_spectrum(0.5, kGrid), 1.5, 0.1)});
+    const std::uint32_t lamp = parts.add(scene::Sphere{10.0}, at(0.0, 80.0, 200.0), 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(10.0, kGrid)});
+    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(0.1, kGrid)});
+    const scene::Scene scene = parts.scene();
+    std::vector<render::PathStart> starts;
+    for (std::uint32_t i = 0; i < 301; ++i) {
+        starts.push_back({.ray = {{0.3 * i - 40.0, 0.1 * i - 20.0, 100.0}, {0.0, 0.0, -1.0}},
+                          .path = kGrid.path(static_cast<int>(i) % kGrid.size()),
+                          .numbers = render::PathSampler(3, i, 5)});
+    }
+    const std::vector<render::PathStart> alone = starts;
+    std::vector<render::PathRadiance> found(starts.size());
+    render::trace_paths(scene, {}, starts, found);
+    int by_heroes = 0;
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+        render::PathSampler numbers = alone[i].numbers;
+        const render::PathRadiance expected = render::trace_path(scene, alone[i].ray, alone[i].path, {}, numbers);
+        EXPECT_EQ(found[i].radiance, expected.radiance) << i;
+        EXPECT_EQ(found[i].hero_radiance, expected.hero_radiance) << i;
+        EXPECT_EQ(found[i].rays, expected.rays) << i;
+        EXPECT_EQ(found[i].first->point, expected.first->point) << i;
+        EXPECT_EQ(starts[i].numbers.next(), numbers.next()) << i;
+        by_heroes += expected.hero_radiance > 0.0F ? 1 : 0;
+    }
+    EXPECT_GT(by_heroes, 10);
+}
+
 }  // namespace lensproof::path_tracer_test

@@ -1,7 +1,9 @@
 // engine/render/integrators/path_tracer.h — camera paths: from the film through the lens and the scene to the lights.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/base/ray.h"
@@ -36,17 +38,33 @@ struct CameraRay {
     PathPdf pdf;      // per etendue, times a pixel's area (Camera)
 };
 
-/// One estimate of the radiance that arrives at `ray.origin` against `ray.direction` (world frame, mm), at the path's
-/// wavelengths: unbiased but for paths of more than `max_bounces` scatterings, which are left out.
+/// A path that is to be traced.
+struct PathStart {
+    Ray<double> ray;  // world frame, mm
+    spectral::PathWavelengths path;
+    PathSampler numbers;
+    /// What light paths bring to the camera, one for each path of each pixel, is added to what is found: each path
+    /// counts as much as mis_weight.h gives it, and the radiance is a part. Nothing: it is all of it.
+    const CameraRay* drawn = nullptr;
+};
+
+/// Paths that are best traced together: enough for whole packets and for memory to be asked ahead, few enough to stay
+/// in the caches.
+inline constexpr std::size_t kPathBatch = 64;
+
+/// Of each start one estimate of the radiance that arrives at its ray's origin against its direction, at the path's
+/// wavelengths: unbiased but for paths of more than `max_bounces` scatterings, which are left out. What a path finds
+/// does not depend on those beside it. `found`: as many.
 ///
 /// Each surface point adds what lights send there directly, found by sampling lights and by following the BSDF, weighed
 /// by the power heuristic (Veach & Guibas, SIGGRAPH 1995). Where refraction parts the wavelengths the hero goes on
 /// alone (Wilkie et al. 2014, §3.2).
-///
-/// `drawn`: what light paths bring to the camera, one for each path of each pixel, is added to this: each path counts
-/// as much as mis_weight.h gives it, and this is a part of the radiance. Nothing: it is all of it.
+void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::span<PathStart> starts,
+                 std::span<PathRadiance> found);
+
+/// The same of one path that nothing is added to.
 PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const spectral::PathWavelengths& path,
-                        const PathSettings& settings, PathSampler& numbers, const CameraRay* drawn = nullptr);
+                        const PathSettings& settings, PathSampler& numbers);
 
 /// Renders a scene by camera paths. A TileRenderer.
 ///
@@ -61,11 +79,26 @@ class PathTracer {
     void operator()(const TileSamples& samples, FilmTile& tile);
 
   private:
-    void add_path(const CameraPathBuffer& paths, std::size_t path, std::size_t pixel, FilmTile& tile) const;
+    /// A path that left the lens, with what it counts.
+    struct Sample {
+        std::size_t pixel = 0;  // in the tile
+        std::uint32_t sample = 0;
+        spectral::PathWavelengths wavelengths;
+        PathSampler numbers;
+        std::array<float, spectral::kWavelengthsPerPath> weights{};
+        float hero_weight = 0.0F;
+        CameraRay ray;
+    };
+    [[nodiscard]] Sample sample_of(const CameraPathBuffer& paths, std::size_t path, std::size_t pixel) const;
+    void add_batch(FilmTile& tile);
+    void add(const Sample& sample, const PathRadiance& found, FilmTile& tile) const;
     void add_features(std::size_t pixel, const spectral::PathWavelengths& strata, const FirstSurface& first,
                       FilmTile& tile) const;
 
     TilePaths paths_;
+    std::vector<Sample> batch_;
+    std::vector<PathStart> starts_;
+    std::vector<PathRadiance> found_;
     std::vector<Vec3d> albedo_weights_;  // a stratum each; none without features
     View view_;
     bool is_weighed_;

@@ -1,39 +1,47 @@
 #include "engine/scene/geometry/geometry.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <tuple>
 #include <utility>
 
+#include "engine/base/infinity.h"
 #include "engine/scene/geometry/geometry_data.h"
+#include "engine/scene/geometry/packet/analytic_kernels.h"
 
 namespace lensproof::scene {
 
 namespace {
 
+/// What a ray has met so far.
+struct Nearest {
+    Meeting<double> meeting;
+    std::uint32_t object = RTC_INVALID_GEOMETRY_ID;  // none
+    std::uint32_t primitive = 0;
+
+    [[nodiscard]] bool is_one() const { return object != RTC_INVALID_GEOMETRY_ID; }
+
+    /// Takes a meeting if it is nearer; says whether it did.
+    bool offer(const Meeting<double>& other, std::uint32_t of_object, std::uint32_t of_primitive) {
+        const bool is_tie =
+            other.at == meeting.at && is_one() && std::pair(of_object, of_primitive) < std::pair(object, primitive);
+        if (is_one() && !(other.at < meeting.at) && !is_tie) {
+            return false;
+        }
+        *this = {other, of_object, of_primitive};
+        return true;
+    }
+};
+
 /// What is asked of Embree, and the nearest answer so far; carried to the callbacks.
 struct Query {
     embree::Context context;  // the first member: Embree hands its address back
     const SceneGeometry::Data* data = nullptr;
-    Stretch ray;
+    Stretch<double> ray;
     double behind_mm = 0.0;  // how far Embree's ray starts behind the true origin
-    Meeting nearest;
-    std::uint32_t object = RTC_INVALID_GEOMETRY_ID;
-    std::uint32_t primitive = 0;
+    Nearest nearest;
     bool is_occlusion = false;
-
-    /// Takes a meeting if it is nearer; says whether it did.
-    bool offer(const Meeting& meeting, std::uint32_t of_object, std::uint32_t of_primitive) {
-        const bool is_tie = meeting.at == nearest.at && object != RTC_INVALID_GEOMETRY_ID &&
-                            std::pair(of_object, of_primitive) < std::pair(object, primitive);
-        if (object != RTC_INVALID_GEOMETRY_ID && !(meeting.at < nearest.at) && !is_tie) {
-            return false;
-        }
-        nearest = meeting;
-        object = of_object;
-        primitive = of_primitive;
-        return true;
-    }
 
     /// How far Embree's ray has to go so that nothing nearer than `at` is lost to its rounding.
     [[nodiscard]] float embree_distance(double at) const {
@@ -45,35 +53,17 @@ Query& query_of(embree::Context* context) {
     return *static_cast<Query*>(static_cast<void*>(context));
 }
 
-std::optional<Meeting> meet_analytic(const PlacedObject& placed, const Stretch& ray) {
-    const AffineMap& to_local = placed.place.to_local;
-    const auto* sphere = std::get_if<Sphere>(placed.shape);
-    return sphere != nullptr ? meet(*sphere, to_local, ray) : meet(*std::get_if<Quad>(placed.shape), to_local, ray);
-}
-
-ShapePoint point_met(const PlacedObject& placed, const Query& query) {
-    if (const auto* mesh = std::get_if<TriangleMesh>(placed.shape)) {
-        return shape_point(*mesh, query.primitive, query.nearest.b1, query.nearest.b2);
-    }
-    if (const auto* quad = std::get_if<Quad>(placed.shape)) {
-        return shape_point(*quad, query.nearest.b1, query.nearest.b2);
-    }
-    const Stretch ray = mapped(placed.place.to_local, query.ray);
-    return shape_point(std::get<Sphere>(*placed.shape), ray.origin + query.nearest.at * ray.direction);
-}
-
-bool is_usable(const Vec3d& origin, const Vec3d& direction) {
+inline bool is_usable(const Vec3d& origin, const Vec3d& direction) {
     constexpr double kFarthestOrigin = 1e15;
     return largest_coordinate(origin) <= kFarthestOrigin && dot(direction, direction) > 0.0 &&
            largest_coordinate(direction) < 2.0;
 }
 
-/// Prepares the query and Embree's ray for it.
-RTCRay start(Query& query, const SceneGeometry::Data& data, const Stretch& ray) {
+/// Embree's ray for a query.
+RTCRay start(Query& query) {
+    const Stretch<double>& ray = query.ray;
     embree::init(query.context);
-    query.data = &data;
-    query.ray = ray;
-    query.behind_mm = kFloatRoundings * (largest_coordinate(ray.origin) + data.mesh_reach_mm);
+    query.behind_mm = kFloatRoundings * (largest_coordinate(ray.origin) + query.data->mesh_reach_mm);
     const auto origin = converted<float>(ray.origin - query.behind_mm * ray.direction);
     const auto direction = converted<float>(ray.direction);
     const float from = static_cast<float>(ray.from * (1.0 - kFloatRoundings));
@@ -84,8 +74,77 @@ RTCRay start(Query& query, const SceneGeometry::Data& data, const Stretch& ray) 
             .dir_x = direction.x,
             .dir_y = direction.y,
             .dir_z = direction.z,
-            .tfar = query.embree_distance(ray.to),
+            .tfar = query.embree_distance(query.nearest.is_one() ? query.nearest.meeting.at : ray.to),
             .mask = ~0U};
+}
+
+/// Goes on from what is met already with what Embree knows of.
+void ask_embree(Query& query) {
+    RTCRayHit ray{.ray = start(query)};
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree::intersect(query.data->scene.get(), query.context, ray);
+}
+
+bool embree_finds_any(Query& query) {
+    query.is_occlusion = true;
+    RTCRay ray = start(query);
+    embree::occluded(query.data->scene.get(), query.context, ray);
+    return ray.tfar < 0.0F;
+}
+
+SurfaceHit hit_at(const SceneGeometry::Data& data, const Stretch<double>& ray, const Nearest& nearest) {
+    const PlacedObject& met = data.objects[nearest.object];
+    const Meeting<double>& at = nearest.meeting;
+    const auto on = [&](const ShapePoint& point) { return world_hit(met.place, point); };
+    const auto* mesh = std::get_if<TriangleMesh>(met.shape);
+    const auto* quad = std::get_if<Quad>(met.shape);
+    SurfaceHit hit;
+    if (mesh != nullptr) {
+        hit = on(shape_point(*mesh, nearest.primitive, at.b1, at.b2));
+    } else if (quad != nullptr) {
+        hit = on(shape_point(*quad, at.b1, at.b2));
+    } else {
+        const Stretch<double> local = mapped(met.place.to_local, ray);
+        hit = on(shape_point(std::get<Sphere>(*met.shape), local.origin + at.at * local.direction));
+    }
+    hit.distance_mm = at.at;
+    hit.material = met.object.material;
+    hit.object = nearest.object;
+    hit.primitive = nearest.primitive;
+    return hit;
+}
+
+/// What of two points is asked for: from one end whatever the order, so that both orders agree to the last bit.
+Stretch<double> stretch_between(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to) {
+    const bool is_in_order = std::tuple(from.x, from.y, from.z) < std::tuple(to.x, to.y, to.z);
+    const Vec3d along = is_in_order ? to - from : from - to;
+    const double distance = length(along);
+    constexpr double kRoundings = 64.0 * std::numeric_limits<double>::epsilon();
+    const double margin = kRoundings * (reach({from, to}) + reach(scene.bounds()));
+    return {.origin = is_in_order ? from : to,
+            .direction = (1.0 / distance) * along,
+            .from = margin,
+            .to = distance - margin};
+}
+
+/// Calls visit(i, columns, j) for each of `count` rays, which `ray_of(i)` says, the j-th of its columns, once those of
+/// the spheres and quads which are tested one by one are met.
+template <class RayOf, class Visit>
+void meet_in_columns(const SceneGeometry::Data& data, std::size_t count, const RayOf& ray_of, const Visit& visit) {
+    RayColumns columns;
+    for (std::size_t first = 0; first < count; first += RayColumns::kMost) {
+        columns.size = std::min(RayColumns::kMost, count - first);
+        for (std::size_t j = 0; j < columns.size; ++j) {
+            columns.set(j, ray_of(first + j));
+        }
+        if (data.tests_analytic_one_by_one) {
+            analytic_kernels().meet_nearest(data.analytic, columns);
+        }
+        for (std::size_t j = 0; j < columns.size; ++j) {
+            visit(first + j, columns, j);
+        }
+    }
 }
 
 }  // namespace
@@ -96,10 +155,10 @@ void judge_triangle(const RTCFilterFunctionNArguments* arguments) {
     const bool is_instance = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
     const std::uint32_t object = is_instance ? hit.instID[0] : hit.geomID;
     const ObjectPlace& place = query.data->objects[object].place;
-    const Stretch ray = is_instance ? mapped(place.to_local, query.ray) : query.ray;
+    const Stretch<double> ray = is_instance ? mapped(place.to_local, query.ray) : query.ray;
     const double near = kFloatRoundings * (largest_coordinate(query.ray.origin) + place.reach_mm);
     const auto meeting = meet(corners(query.data->mesh(object), hit.primID), hit.u, hit.v, near, ray);
-    if (!meeting || (!query.is_occlusion && !query.offer(*meeting, object, hit.primID))) {
+    if (!meeting || (!query.is_occlusion && !query.nearest.offer(*meeting, object, hit.primID))) {
         arguments->valid[0] = 0;
     } else if (!query.is_occlusion) {
         float& embree_far = RTCRayN_tfar(arguments->ray, 1, 0);
@@ -112,11 +171,11 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* arguments) {
         return;
     }
     Query& query = query_of(arguments->context);
-    const std::uint32_t object = query.data->analytic[arguments->primID];
-    const auto meeting = meet_analytic(query.data->objects[object], query.ray);
-    if (meeting && query.offer(*meeting, object, 0)) {
+    const AnalyticObject& object = query.data->analytic[arguments->primID];
+    const auto [is_met, meeting] = meet(object, query.ray);
+    if (is_met && query.nearest.offer(meeting, object.object, 0)) {
         auto* ray = reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-        ray->ray.tfar = std::min(ray->ray.tfar, query.embree_distance(meeting->at));
+        ray->ray.tfar = std::min(ray->ray.tfar, query.embree_distance(meeting.at));
         ray->hit.geomID = arguments->geomID;
         ray->hit.primID = arguments->primID;
     }
@@ -127,14 +186,14 @@ void occlude_analytic(const RTCOccludedFunctionNArguments* arguments) {
         return;
     }
     const Query& query = query_of(arguments->context);
-    if (meet_analytic(query.data->objects[query.data->analytic[arguments->primID]], query.ray)) {
+    if (meet(query.data->analytic[arguments->primID], query.ray).is_met) {
         RTCRayN_tfar(arguments->ray, 1, 0) = -std::numeric_limits<float>::infinity();
     }
 }
 
 void bound_analytic(const RTCBoundsFunctionArguments* arguments) {
     const auto& data = *static_cast<const SceneGeometry::Data*>(arguments->geometryUserPtr);
-    const Box& box = data.objects[data.analytic[arguments->primID]].bounds;
+    const Box& box = data.objects[data.analytic[arguments->primID].object].bounds;
     const double margin = kFloatRoundings * reach(data.bounds);
     const auto low = converted<float>(box.low - Vec3d{margin, margin, margin});
     const auto high = converted<float>(box.high + Vec3d{margin, margin, margin});
@@ -170,61 +229,69 @@ std::optional<SurfaceHit> intersect(const SceneGeometry& scene, const Vec3d& ori
     if (!is_usable(origin, direction)) {
         return std::nullopt;
     }
-    Query query;
-    RTCRayHit ray{.ray = start(query, scene.data(), {origin, direction, from_mm, to_mm})};
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    if (scene.data().tests_analytic_one_by_one) {
-        for (const std::uint32_t object : scene.data().analytic) {
-            if (const auto meeting = meet_analytic(scene.data().objects[object], query.ray)) {
-                query.offer(*meeting, object, 0);
+    const SceneGeometry::Data& data = scene.data();
+    Query query{.data = &data, .ray = {origin, direction, from_mm, to_mm}};
+    if (data.tests_analytic_one_by_one) {
+        for (const AnalyticObject& object : data.analytic) {
+            if (const auto [is_met, meeting] = meet(object, query.ray); is_met) {
+                query.nearest.offer(meeting, object.object, 0);
             }
         }
-        if (query.object != RTC_INVALID_GEOMETRY_ID) {
-            ray.ray.tfar = query.embree_distance(query.nearest.at);
+    }
+    if (data.has_embree_geometry) {
+        ask_embree(query);
+    }
+    return query.nearest.is_one() ? std::optional(hit_at(data, query.ray, query.nearest)) : std::nullopt;
+}
+
+void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
+               std::span<std::optional<SurfaceHit>> hits) {
+    const SceneGeometry::Data& data = scene.data();
+    const auto stretch = [&](std::size_t i) -> Stretch<double> {
+        return {.origin = rays[i].origin, .direction = rays[i].direction, .to = kInfinity};
+    };
+    meet_in_columns(data, rays.size(), stretch, [&](std::size_t i, const RayColumns& columns, std::size_t j) {
+        hits[i].reset();
+        if (!is_usable(rays[i].origin, rays[i].direction)) {
+            return;
         }
-    }
-    if (scene.data().has_embree_geometry) {
-        embree::intersect(scene.data().scene.get(), query.context, ray);
-    }
-    if (query.object == RTC_INVALID_GEOMETRY_ID) {
-        return std::nullopt;
-    }
-    const PlacedObject& met = scene.data().objects[query.object];
-    SurfaceHit hit = world_hit(met.place, point_met(met, query));
-    hit.distance_mm = query.nearest.at;
-    hit.material = met.object.material;
-    hit.object = query.object;
-    hit.primitive = query.primitive;
-    return hit;
+        Query query{.data = &data, .ray = stretch(i)};
+        if (columns.object[j] >= 0.0) {
+            query.nearest = {columns.meeting(j), data.analytic[static_cast<std::size_t>(columns.object[j])].object};
+        }
+        if (data.has_embree_geometry) {
+            ask_embree(query);
+        }
+        if (query.nearest.is_one()) {
+            hits[i] = hit_at(data, query.ray, query.nearest);
+        }
+    });
 }
 
 bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to) {
-    // From one end whatever the order, so that both orders agree to the last bit.
-    const bool is_in_order = std::tuple(from.x, from.y, from.z) < std::tuple(to.x, to.y, to.z);
-    const Vec3d& origin = is_in_order ? from : to;
-    const Vec3d along = is_in_order ? to - from : from - to;
-    const double distance = length(along);
-    const Vec3d direction = (1.0 / distance) * along;
-    if (!is_usable(origin, direction)) {
+    const SceneGeometry::Data& data = scene.data();
+    Query query{.data = &data, .ray = stretch_between(scene, from, to)};
+    if (!is_usable(query.ray.origin, query.ray.direction)) {
         return false;
     }
-    constexpr double kRoundings = 64.0 * std::numeric_limits<double>::epsilon();
-    const double margin = kRoundings * (reach({from, to}) + reach(scene.bounds()));
-    Query query;
-    query.is_occlusion = true;
-    RTCRay ray = start(query, scene.data(), {origin, direction, margin, distance - margin});
-    if (scene.data().tests_analytic_one_by_one) {
-        for (const std::uint32_t object : scene.data().analytic) {
-            if (meet_analytic(scene.data().objects[object], query.ray)) {
-                return true;
-            }
-        }
-    }
-    if (scene.data().has_embree_geometry) {
-        embree::occluded(scene.data().scene.get(), query.context, ray);
-    }
-    return ray.tfar < 0.0F;
+    return (data.tests_analytic_one_by_one &&
+            std::ranges::any_of(data.analytic,
+                                [&](const AnalyticObject& object) { return meet(object, query.ray).is_met; })) ||
+           (data.has_embree_geometry && embree_finds_any(query));
+}
+
+void find_occluded(const SceneGeometry& scene, std::span<const Segment> ways, std::span<std::uint8_t> are_occluded) {
+    const SceneGeometry::Data& data = scene.data();
+    std::array<Stretch<double>, RayColumns::kMost> stretches;
+    const auto stretch = [&](std::size_t i) {
+        return stretches[i % stretches.size()] = stretch_between(scene, ways[i].from, ways[i].to);
+    };
+    meet_in_columns(data, ways.size(), stretch, [&](std::size_t i, const RayColumns& columns, std::size_t j) {
+        Query query{.data = &data, .ray = stretches[i % stretches.size()]};
+        const bool is_blocked = is_usable(query.ray.origin, query.ray.direction) &&
+                                (columns.object[j] >= 0.0 || (data.has_embree_geometry && embree_finds_any(query)));
+        are_occluded[i] = is_blocked ? 1 : 0;
+    });
 }
 
 }  // namespace lensproof::scene

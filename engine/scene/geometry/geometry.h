@@ -10,10 +10,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/base/affine.h"
+#include "engine/base/ray.h"
 #include "engine/scene/geometry/shapes.h"
 
 namespace lensproof::scene {
@@ -76,10 +78,23 @@ class SceneGeometry {
 std::optional<SurfaceHit> intersect(const SceneGeometry& scene, const Vec3d& origin, const Vec3d& direction,
                                     double from_mm, double to_mm);
 
+/// The same of many rays, from their origins on without end; `hits` has room for as many.
+void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
+               std::span<std::optional<SurfaceHit>> hits);
+
+/// The way between two points.
+struct Segment {
+    Vec3d from;
+    Vec3d to;
+};
+
 /// Whether anything stands between two points; the same for either order. What lies within double's rounding of an end
 /// does not count, so that points on surfaces may be asked for; from them `ray_origin` is still the better end, since
 /// it holds at grazing angles too.
 bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to);
+
+/// The same of many ways: 1 where anything stands in one, else 0; `are_occluded` has room for as many.
+void find_occluded(const SceneGeometry& scene, std::span<const Segment> ways, std::span<std::uint8_t> are_occluded);
 
 /// Where a ray begins that leaves `point` on a surface in `direction`: moved along the normal, to the direction's side,
 /// by twice the bound `error_mm` of the point's rounding. The sphere, quad or triangle, which then lies behind, is not

@@ -120,12 +120,22 @@ void place_objects(SceneGeometry::Data& data, const std::vector<SceneObject>& ob
     }
 }
 
+/// Its rows are of unit length and at right angles.
+bool is_rigid(const Matrix3& linear) {
+    constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+    const auto is_near = [](double a, double b) { return std::abs(a - b) <= kRounding; };
+    const auto& [x, y, z] = linear;
+    return is_near(dot(x, x), 1.0) && is_near(dot(y, y), 1.0) && is_near(dot(z, z), 1.0) && is_near(dot(x, y), 0.0) &&
+           is_near(dot(y, z), 0.0) && is_near(dot(z, x), 0.0);
+}
+
 void bound_objects(SceneGeometry::Data& data) {
     for (PlacedObject& placed : data.objects) {
         const AffineMap& to_world = placed.place.to_world;
         placed.bounds = std::visit([&](const auto& shape) { return bounds_of(shape, to_world); }, *placed.shape);
         const Vec3d stretch = principal_stretches(to_world.linear);
         placed.place.stretch_ratio = stretch.x / stretch.z;
+        placed.place.is_rigid = is_rigid(to_world.linear);
         placed.place.reach_mm = std::max(reach(placed.bounds), largest_coordinate(to_world.translation));
         if (!(placed.place.reach_mm <= kFarthest)) {
             throw InputError(fmt::format("object {} of the scene lies as far out as {} mm, expected {} at most",
@@ -203,6 +213,17 @@ void attach_analytic(SceneGeometry::Data& data) {
     attach(data.scene.get(), geometry, static_cast<std::uint32_t>(data.objects.size()));
 }
 
+AnalyticObject analytic_object(const PlacedObject& placed, std::uint32_t index) {
+    AnalyticObject made{.to_local = placed.place.to_local, .object = index};
+    if (const auto* sphere = std::get_if<Sphere>(placed.shape)) {
+        made.radius_mm = sphere->radius_mm;
+    } else {
+        const auto& quad = std::get<Quad>(*placed.shape);
+        made.half_mm = {0.5 * quad.width_mm, 0.5 * quad.height_mm};
+    }
+    return made;
+}
+
 void build(SceneGeometry::Data& data) {
     data.device.reset(rtcNewDevice(nullptr));
     if (!data.device) {
@@ -213,7 +234,7 @@ void build(SceneGeometry::Data& data) {
     for (std::uint32_t i = 0; i < data.objects.size(); ++i) {
         const PlacedObject& placed = data.objects[i];
         if (!std::holds_alternative<TriangleMesh>(*placed.shape)) {
-            data.analytic.push_back(i);
+            data.analytic.push_back(analytic_object(placed, i));
         } else if (data.uses[placed.object.shape] == 1) {
             attach_mesh(data, data.scene.get(), data.mesh(i), i);
         } else {

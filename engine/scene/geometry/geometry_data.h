@@ -29,7 +29,7 @@ struct SceneGeometry::Data {
     std::vector<Shape> shapes;
     std::vector<int> uses;  // of each shape, by objects
     std::vector<PlacedObject> objects;
-    std::vector<std::uint32_t> analytic;     // the spheres and quads among them, the primitives of one Embree geometry
+    std::vector<AnalyticObject> analytic;    // the spheres and quads among them, the primitives of one Embree geometry
     bool tests_analytic_one_by_one = false;  // a handful is sooner tested so than found by Embree
     bool has_embree_geometry = false;
     std::vector<std::string> remarks;

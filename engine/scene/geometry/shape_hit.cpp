@@ -33,50 +33,8 @@ Vec3d u_direction(const std::array<Vec3d, 3>& p, const std::array<Vec2<float>, 3
 
 }  // namespace
 
-Stretch mapped(const AffineMap& map, const Stretch& ray) {
-    return {
-        .origin = map_point(map, ray.origin), .direction = map.linear * ray.direction, .from = ray.from, .to = ray.to};
-}
-
-std::optional<Meeting> meet(const Sphere& sphere, const AffineMap& to_local, const Stretch& world_ray) {
-    const Stretch ray = mapped(to_local, world_ray);
-    const double squared = dot(ray.direction, ray.direction);
-    const double nearest = -dot(ray.origin, ray.direction) / squared;
-    const Vec3d p = ray.origin + nearest * ray.direction;
-    const double left = sphere.radius_mm * sphere.radius_mm - dot(p, p);
-    if (!(left >= 0.0)) {
-        return std::nullopt;
-    }
-    const double half_chord = std::sqrt(left / squared);
-    // The root that is nearer to the origin by Vieta's product of both: their difference would cancel on the sphere.
-    const double far = nearest + std::copysign(half_chord, nearest);
-    const double distance = length(ray.origin);
-    const double product = (distance - sphere.radius_mm) * (distance + sphere.radius_mm) / squared;
-    const double near = far != 0.0 ? product / far : 0.0;
-    for (const double at : {std::min(near, far), std::max(near, far)}) {
-        if (at > ray.from && at < ray.to) {
-            return Meeting{.at = at};
-        }
-    }
-    return std::nullopt;
-}
-
-std::optional<Meeting> meet(const Quad& quad, const AffineMap& to_local, const Stretch& ray) {
-    // Of most rays the height above the plane alone says that they miss.
-    const double height = dot(to_local.linear[2], ray.origin) + to_local.translation.z;
-    const double at = -height / dot(to_local.linear[2], ray.direction);
-    if (!(at > ray.from && at < ray.to)) {
-        return std::nullopt;
-    }
-    const Vec3d point = ray.origin + at * ray.direction;
-    const double x = dot(to_local.linear[0], point) + to_local.translation.x;
-    const double y = dot(to_local.linear[1], point) + to_local.translation.y;
-    const bool is_inside = std::abs(x) <= 0.5 * quad.width_mm && std::abs(y) <= 0.5 * quad.height_mm;
-    return is_inside ? std::optional(Meeting{.at = at, .b1 = x, .b2 = y}) : std::nullopt;
-}
-
-std::optional<Meeting> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
-                            const Stretch& ray) {
+std::optional<Meeting<double>> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
+                                    const Stretch<double>& ray) {
     // Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
     const Vec3d e1 = triangle[1] - triangle[0];
     const Vec3d e2 = triangle[2] - triangle[0];
@@ -84,7 +42,7 @@ std::optional<Meeting> meet(const std::array<Vec3d, 3>& triangle, double float_b
     const Vec3d across = cross(ray.direction, e2);
     const Vec3d q = cross(from_first, e1);
     const double scale = 1.0 / dot(e1, across);
-    Meeting meeting{
+    Meeting<double> meeting{
         .at = scale * dot(e2, q), .b1 = scale * dot(from_first, across), .b2 = scale * dot(ray.direction, q)};
     if (!(meeting.b1 >= 0.0 && meeting.b2 >= 0.0 && meeting.b1 + meeting.b2 <= 1.0)) {
         const double b1 = std::max(float_b1, 0.0);
@@ -113,9 +71,10 @@ ShapePoint shape_point(const TriangleMesh& mesh, std::uint32_t triangle, double 
     const Vec3d e1 = p[1] - p[0];
     const Vec3d e2 = p[2] - p[0];
     const Vec3d area = cross(e1, e2);
-    ShapePoint at{.point = p[0] + b1 * e1 + b2 * e2, .geometric_normal = normalized(area), .uv = {b1, b2}};
+    const double per_area2 = 1.0 / dot(area, area);
+    ShapePoint at{.point = p[0] + b1 * e1 + b2 * e2, .geometric_normal = std::sqrt(per_area2) * area, .uv = {b1, b2}};
     at.shading_normal = at.geometric_normal;
-    at.sharpness = std::sqrt(dot(e1, e1) * dot(e2, e2) / dot(area, area));
+    at.sharpness = std::sqrt(dot(e1, e1) * dot(e2, e2) * per_area2);
     const double b0 = 1.0 - b1 - b2;
     if (!mesh.normals.empty()) {
         const Vec3d mean = b0 * converted<double>(mesh.normals[i0]) + b1 * converted<double>(mesh.normals[i1]) +
@@ -158,11 +117,15 @@ ShapePoint shape_point(const Quad& quad, double x, double y) {
 
 SurfaceHit world_hit(const ObjectPlace& place, const ShapePoint& at) {
     SurfaceHit hit{.point = map_point(place.to_world, at.point), .uv = at.uv};
+    const Matrix3& ahead = place.to_world.linear;
     const Matrix3& back = place.to_local.linear;  // normals are carried by its transpose
-    hit.geometric_normal = normalized(transposed_times(back, at.geometric_normal));
+    const auto carried = [&](const Vec3d& normal) {
+        return place.is_rigid ? ahead * normal : normalized(transposed_times(back, normal));
+    };
+    hit.geometric_normal = carried(at.geometric_normal);
     const bool is_flat = at.shading_normal == at.geometric_normal;
-    hit.shading_normal = is_flat ? hit.geometric_normal : normalized(transposed_times(back, at.shading_normal));
-    hit.tangent = tangent_along(place.to_world.linear * at.tangent, hit.shading_normal);
+    hit.shading_normal = is_flat ? hit.geometric_normal : carried(at.shading_normal);
+    hit.tangent = place.is_rigid ? ahead * at.tangent : tangent_along(ahead * at.tangent, hit.shading_normal);
     // A point passes some ten operations on its way into the shape's frame and back, each with the rounding of the
     // largest number involved; a map that stretches unevenly carries an error along one direction to another.
     constexpr double kRoundings = 32.0 * std::numeric_limits<double>::epsilon();

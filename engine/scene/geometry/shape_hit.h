@@ -5,34 +5,10 @@
 
 #include "engine/base/affine.h"
 #include "engine/scene/geometry/geometry.h"
+#include "engine/scene/geometry/packet/analytic_meeting.h"
 #include "engine/scene/geometry/shapes.h"
 
 namespace lensproof::scene {
-
-/// A ray in some frame and the open stretch of it that is asked for, in units of `direction`'s length, which an affine
-/// map changes while the parameter stays.
-struct Stretch {
-    Vec3d origin;
-    Vec3d direction;
-    double from = 0.0;
-    double to = 0.0;
-};
-
-Stretch mapped(const AffineMap& map, const Stretch& ray);
-
-/// Where along the ray, and where on the surface: a triangle's barycentric coordinates of its second and third vertex,
-/// a quad's x and y; nothing of use for a sphere.
-struct Meeting {
-    double at = 0.0;
-    double b1 = 0.0;
-    double b2 = 0.0;
-};
-
-/// The first meeting on the stretch with a shape that `to_local` carries into its own frame. The sphere's roots are
-/// taken about the ray's nearest point to the centre, so that nothing cancels for a small sphere far away (Haines et
-/// al., Ray Tracing Gems, ch. 7).
-std::optional<Meeting> meet(const Sphere& sphere, const AffineMap& to_local, const Stretch& ray);
-std::optional<Meeting> meet(const Quad& quad, const AffineMap& to_local, const Stretch& ray);
 
 /// The triangle that Embree's float ray has met at barycentric coordinates (float_b1, float_b2).
 ///
@@ -40,8 +16,8 @@ std::optional<Meeting> meet(const Quad& quad, const AffineMap& to_local, const S
 /// float's rounding, and Embree has found this triangle instead of its neighbour: the point that Embree names is taken,
 /// so that closed meshes stay closed; but not within float's rounding of the origin, `near`, where it could be the
 /// surface that the ray is just leaving.
-std::optional<Meeting> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
-                            const Stretch& ray);
+std::optional<Meeting<double>> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
+                                    const Stretch<double>& ray);
 
 /// The triangle's vertices.
 std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle);
@@ -68,6 +44,7 @@ struct ObjectPlace {
     AffineMap to_world;
     AffineMap to_local;
     double stretch_ratio = 1.0;  // of the largest principal stretch to the smallest
+    bool is_rigid = true;        // `to_world` keeps lengths and angles, to rounding
     double reach_mm = 0.0;       // of a coordinate that the map handles: the shape's, in the world, and the translation
 };
 

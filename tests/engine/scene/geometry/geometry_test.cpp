@@ -373,4 +373,67 @@ TEST(SceneGeometry, NothingIsMetByRaysThatAreNone) {
     EXPECT_EQ(empty.bounds().high, (Vec3d{}));
 }
 
+/// Spheres, quads, a mesh and one that stands there twice: with a few of the first two, and with so many that Embree
+/// finds them.
+SceneGeometry crowd(int spheres_and_quads, std::mt19937_64& random) {
+    std::vector<Shape> shapes = {box_mesh(2.0F), icosphere(1.5, 2)};
+    const auto somewhere = [&] {
+        return at({uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
+                  about_y(uniform(random, 0, 360)));
+    };
+    std::vector<SceneObject> objects = {{.shape = 0, .to_world = somewhere()},
+                                        {.shape = 1, .to_world = somewhere(), .material = 1},
+                                        {.shape = 1, .to_world = somewhere(), .material = 2}};
+    for (int i = 0; i < spheres_and_quads; ++i) {
+        objects.push_back({.shape = static_cast<std::uint32_t>(shapes.size()), .to_world = somewhere()});
+        shapes.push_back(i % 2 == 0 ? Shape{Sphere{1.0 + 0.1 * i}} : Shape{Quad{3.0, 2.0}});
+    }
+    return {shapes, objects};
+}
+
+// Many at once meet what each meets by itself, to the bit; what is not finite meets nothing.
+TEST(SceneGeometry, ManyRaysAtOnceMeetWhatEachDoes) {
+    std::mt19937_64 random(31);
+    for (const int spheres_and_quads : {0, 5, 40}) {
+        const SceneGeometry scene = crowd(spheres_and_quads, random);
+        std::vector<Ray<double>> rays;
+        std::vector<Segment> ways;
+        for (int i = 0; i < 1000; ++i) {
+            const Vec3d origin = 12.0 * random_direction(random);
+            rays.push_back({origin, normalized(6.0 * random_direction(random) - origin)});
+            ways.push_back({12.0 * random_direction(random), 6.0 * random_direction(random)});
+        }
+        rays[70].origin.x = std::numeric_limits<double>::quiet_NaN();
+        rays[71].direction = {};
+        ways[130].to = ways[130].from;
+        std::vector<std::optional<SurfaceHit>> hits(rays.size());
+        std::vector<std::uint8_t> are_occluded(ways.size());
+        intersect(scene, rays, hits);
+        find_occluded(scene, ways, are_occluded);
+        int met = 0;
+        int occluded = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const auto expected = intersect(scene, rays[i].origin, rays[i].direction, 0.0, kInfinity);
+            ASSERT_EQ(hits[i].has_value(), expected.has_value()) << i;
+            EXPECT_EQ(are_occluded[i] != 0, is_occluded(scene, ways[i].from, ways[i].to)) << i;
+            occluded += are_occluded[i];
+            if (expected) {
+                ++met;
+                EXPECT_EQ(hits[i]->object, expected->object);
+                EXPECT_EQ(hits[i]->primitive, expected->primitive);
+                EXPECT_EQ(hits[i]->material, expected->material);
+                EXPECT_EQ(hits[i]->distance_mm, expected->distance_mm);
+                EXPECT_EQ(hits[i]->point, expected->point);
+                EXPECT_EQ(hits[i]->shading_normal, expected->shading_normal);
+                EXPECT_EQ(hits[i]->uv, expected->uv);
+                EXPECT_EQ(hits[i]->error_mm, expected->error_mm);
+            }
+        }
+        EXPECT_FALSE(hits[70]);
+        EXPECT_FALSE(hits[71]);
+        EXPECT_GT(met, 40);
+        EXPECT_GT(occluded, 40);
+    }
+}
+
 }  // namespace lensproof::scene::geometry_test

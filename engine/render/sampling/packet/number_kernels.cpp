@@ -1,0 +1,31 @@
+#include "engine/render/sampling/packet/number_kernels.h"
+
+namespace lensproof::render {
+
+void NumberColumns::add(const PathSampler& sampler, std::uint64_t sets) {
+    const auto i = static_cast<std::size_t>(size++);
+    const PathSampler::Place place = sampler.place();
+    seed[i] = place.seed;
+    set[i] = place.set + sets;
+    pixel[i] = place.pixel;
+    sample[i] = place.sample;
+}
+
+std::array<double, PathSampler::kNumbers> NumberColumns::numbers(int i) const {
+    const auto at = static_cast<std::size_t>(i);
+    return {number[0][at], number[1][at], number[2][at], number[3][at], number[4][at]};
+}
+
+const NumberKernels& number_kernels(std::optional<SimdLevel> level) {
+    static const LoopsByLevel<NumberKernels> found{
+        {SimdLevel::scalar, scalar_number_kernels},
+        {SimdLevel::baseline, baseline_number_kernels},
+#ifdef LENSPROOF_X86_KERNELS
+        {SimdLevel::avx2, avx2_number_kernels},
+        {SimdLevel::avx512, avx512_number_kernels},
+#endif
+    };
+    return found.at(level);
+}
+
+}  // namespace lensproof::render

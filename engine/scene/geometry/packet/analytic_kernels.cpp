@@ -1,0 +1,29 @@
+#include "engine/scene/geometry/packet/analytic_kernels.h"
+
+namespace lensproof::scene {
+
+void RayColumns::set(std::size_t i, const Stretch<double>& ray) {
+    origin_x[i] = ray.origin.x;
+    origin_y[i] = ray.origin.y;
+    origin_z[i] = ray.origin.z;
+    direction_x[i] = ray.direction.x;
+    direction_y[i] = ray.direction.y;
+    direction_z[i] = ray.direction.z;
+    from[i] = ray.from;
+    to[i] = ray.to;
+    object[i] = -1.0;
+}
+
+const AnalyticKernels& analytic_kernels(std::optional<SimdLevel> level) {
+    static const LoopsByLevel<AnalyticKernels> found{
+        {SimdLevel::scalar, scalar_analytic_kernels},
+        {SimdLevel::baseline, baseline_analytic_kernels},
+#ifdef LENSPROOF_X86_KERNELS
+        {SimdLevel::avx2, avx2_analytic_kernels},
+        {SimdLevel::avx512, avx512_analytic_kernels},
+#endif
+    };
+    return found.at(level);
+}
+
+}  // namespace lensproof::scene

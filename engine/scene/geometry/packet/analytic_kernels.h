@@ -1,0 +1,45 @@
+// engine/scene/geometry/packet/analytic_kernels.h — many rays against a scene's spheres and quads, a loop for each
+// width of packets.
+#pragma once
+#include <array>
+#include <optional>
+#include <span>
+
+#include "engine/base/simd_level.h"
+#include "engine/scene/geometry/packet/analytic_meeting.h"
+
+namespace lensproof::scene {
+
+/// Rays side by side, a column a number. World frame, mm.
+struct alignas(64) RayColumns {
+    static constexpr std::size_t kMost = 64;
+    using Column = std::array<double, kMost>;
+
+    Column origin_x, origin_y, origin_z;
+    Column direction_x, direction_y, direction_z;
+    Column from;
+    Column to;      // the end of the stretch; then the nearest meeting, if there is one
+    Column object;  // which of the objects was met; −1: none
+    Column b1, b2;  // as Meeting has them
+    std::size_t size = 0;
+
+    /// The i-th ray; it has met nothing.
+    void set(std::size_t i, const Stretch<double>& ray);
+    [[nodiscard]] Meeting<double> meeting(std::size_t i) const { return {.at = to[i], .b1 = b1[i], .b2 = b2[i]}; }
+};
+
+/// The loops of one level; all levels yield the same bits.
+struct AnalyticKernels {
+    /// Which of the objects each ray meets first; of two that are equally far, the one before.
+    void (*meet_nearest)(std::span<const AnalyticObject> objects, RayColumns& rays);
+};
+
+/// Those of a level, or of the widest; throws as `LoopsByLevel` does.
+const AnalyticKernels& analytic_kernels(std::optional<SimdLevel> level = {});
+
+AnalyticKernels scalar_analytic_kernels();
+AnalyticKernels baseline_analytic_kernels();
+AnalyticKernels avx2_analytic_kernels();    // x86-64 alone
+AnalyticKernels avx512_analytic_kernels();  // x86-64 alone
+
+}  // namespace lensproof::scene

@@ -1,0 +1,92 @@
+#include "engine/scene/geometry/packet/analytic_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "tests/engine/scene/scene_shapes.h"
+
+namespace lensproof::scene::analytic_kernels_test {
+
+using test::at;
+using test::random_direction;
+using test::scaled;
+using test::uniform;
+
+std::vector<AnalyticObject> some_objects(std::mt19937_64& random) {
+    std::vector<AnalyticObject> objects;
+    for (int i = 0; i < 12; ++i) {
+        const AffineMap map = at({uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
+                                 product(about_x(uniform(random, 0, 360)), scaled(0.5, 1.0, uniform(random, 1, 3))));
+        AnalyticObject object{.to_local = *inverse(map)};
+        if (i % 2 == 0) {
+            object.radius_mm = uniform(random, 0.5, 3.0);
+        } else {
+            object.half_mm = {uniform(random, 0.5, 4.0), uniform(random, 0.5, 4.0)};
+        }
+        objects.push_back(object);
+    }
+    objects.push_back(objects.front());  // two that are equally far wherever they are met
+    objects.push_back(objects[1]);
+    return objects;
+}
+
+/// What the scalar meetings say, one object after the other.
+RayColumns one_by_one(const std::vector<AnalyticObject>& objects, RayColumns rays) {
+    for (std::size_t i = 0; i < rays.size; ++i) {
+        for (std::size_t k = 0; k < objects.size(); ++k) {
+            const auto [is_met, meeting] =
+                meet(objects[k], Stretch<double>{{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
+                                                 {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
+                                                 rays.from[i],
+                                                 rays.to[i]});
+            if (is_met) {
+                rays.object[i] = static_cast<double>(k);
+                rays.to[i] = meeting.at;
+                rays.b1[i] = meeting.b1;
+                rays.b2[i] = meeting.b2;
+            }
+        }
+    }
+    return rays;
+}
+
+// Each lane is computed as a single ray is, so every width of packets has its bits; whatever the number of rays, and
+// of objects that are equally far the first.
+TEST(AnalyticKernels, EveryLevelMeetsWhatSingleRaysDo) {
+    std::mt19937_64 random(1);
+    const std::vector<AnalyticObject> objects = some_objects(random);
+    std::vector<int> met_by_kind(2);
+    for (int round = 0; round < 400; ++round) {
+        RayColumns rays;
+        rays.size = 1 + static_cast<std::size_t>(round) % RayColumns::kMost;
+        for (std::size_t i = 0; i < rays.size; ++i) {
+            rays.set(i, {.origin = {uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
+                         .direction = random_direction(random),
+                         .from = uniform(random, 0, 2),
+                         .to = i % 3 == 0 ? 8.0 : 1e30});
+        }
+        const RayColumns expected = one_by_one(objects, rays);
+        for (const SimdLevel level : available_simd_levels()) {
+            RayColumns found = rays;
+            analytic_kernels(level).meet_nearest(objects, found);
+            for (std::size_t i = 0; i < rays.size; ++i) {
+                ASSERT_EQ(found.object[i], expected.object[i]) << simd_name(level);
+                if (found.object[i] < 0.0) {
+                    continue;
+                }
+                ASSERT_LT(found.object[i], 12.0);
+                const auto object = static_cast<std::size_t>(found.object[i]);
+                ++met_by_kind[object % 2];
+                ASSERT_EQ(found.to[i], expected.to[i]) << simd_name(level);
+                ASSERT_EQ(found.b1[i], expected.b1[i]) << simd_name(level);
+                ASSERT_EQ(found.b2[i], expected.b2[i]) << simd_name(level);
+            }
+        }
+    }
+    EXPECT_GT(met_by_kind[0], 1000);
+    EXPECT_GT(met_by_kind[1], 1000);
+}
+
+}  // namespace lensproof::scene::analytic_kernels_test
