@@ -100,7 +100,7 @@ def lamp_radiance(mi, folder, light):
     import numpy
     points = table(folder, light["radiance"]["file"], light["radiance"]["column"])
     nm = numpy.arange(points[0][0], points[-1][0] + 0.5, 1.0)
-    visible = numpy.array([mi.cie1931_y(float(x)) for x in nm])
+    visible = numpy.array([numpy.ravel(mi.cie1931_y(float(x)))[0] for x in nm])  # an array, where variants are
     luminance = 683.0 * numpy.trapz(numpy.interp(nm, *zip(*points)) * visible, nm)
     return irregular([(x, value * light["luminance_cd_m2"] / luminance) for x, value in points])
 
