@@ -68,6 +68,11 @@ TEST(AnalyticKernels, EveryLevelMeetsWhatSingleRaysDo) {
                          .to = i % 3 == 0 ? 8.0 : 1e30});
         }
         const RayColumns expected = one_by_one(objects, rays);
+        for (std::size_t i = 0; i < rays.size; ++i) {
+            if (expected.object[i] >= 0.0) {
+                ++met_by_kind[static_cast<std::size_t>(expected.object[i]) % 2];
+            }
+        }
         for (const SimdLevel level : available_simd_levels()) {
             RayColumns found = rays;
             analytic_kernels(level).meet_nearest(objects, found);
@@ -77,16 +82,14 @@ TEST(AnalyticKernels, EveryLevelMeetsWhatSingleRaysDo) {
                     continue;
                 }
                 ASSERT_LT(found.object[i], 12.0);
-                const auto object = static_cast<std::size_t>(found.object[i]);
-                ++met_by_kind[object % 2];
                 ASSERT_EQ(found.to[i], expected.to[i]) << simd_name(level);
                 ASSERT_EQ(found.b1[i], expected.b1[i]) << simd_name(level);
                 ASSERT_EQ(found.b2[i], expected.b2[i]) << simd_name(level);
             }
         }
     }
-    EXPECT_GT(met_by_kind[0], 1000);
-    EXPECT_GT(met_by_kind[1], 1000);
+    EXPECT_GT(met_by_kind[0], 200);
+    EXPECT_GT(met_by_kind[1], 200);
 }
 
 }  // namespace lensproof::scene::analytic_kernels_test
