@@ -33,7 +33,8 @@ std::vector<AnalyticObject> some_objects(std::mt19937_64& random) {
 }
 
 /// What the scalar meetings say, one object after the other.
-RayColumns one_by_one(const std::vector<AnalyticObject>& objects, RayColumns rays) {
+RayColumns one_by_one(const std::vector<AnalyticObject>& objects, const RayColumns& given) {
+    RayColumns rays = given;
     for (std::size_t i = 0; i < rays.size; ++i) {
         for (std::size_t k = 0; k < objects.size(); ++k) {
             const auto [is_met, meeting] =
