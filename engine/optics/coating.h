@@ -2,9 +2,10 @@
 // matrices, each polarisation by itself.
 #pragma once
 #include <cmath>
-#include <complex>
 #include <optional>
 #include <vector>
+
+#include "engine/base/complex.h"
 
 namespace lensproof::optics {
 
@@ -55,62 +56,44 @@ struct PolarisedPowers {
     }
 };
 
-/// Amplitudes of the electric field at the surface, the incoming wave's being 1, for waves e^{i(k·x − ωt)}: reflected
-/// at the layers' near side, transmitted at their far side. Signs are Fresnel's (Born & Wolf, §1.5.2): p is positive
-/// along k × s in each of the three waves, so that r_p = −r_s at normal incidence. A transmitted power is |t|² times
-/// the ratio of the two media's n cos θ, for s and p alike.
-template <class T>
-struct CoatedAmplitudes {
-    std::complex<T> r_s;
-    std::complex<T> r_p;
-    std::complex<T> t_s;
-    std::complex<T> t_p;
-};
-
-/// The product of finite numbers: std::complex's own looks for infinities, which takes longer than the product.
-template <class T>
-constexpr std::complex<T> times(const std::complex<T>& a, const std::complex<T>& b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
-
 /// A layer's wave of longitudinal wavenumber q (in units of the vacuum's, Im q ≥ 0) over its thickness: cos φ and
 /// sin φ / q, φ = 2π q · thickness, both divided by e^{Im φ} (which is 1 / `decay`), so that they stay finite in
 /// layers that are thick and let little through. Both are even in q: where a layer is at its critical angle nothing is
 /// lost.
 template <class T>
 struct LayerWave {
-    std::complex<T> cosine;
-    std::complex<T> sine_by_q;
+    Complex<T> cosine;
+    Complex<T> sine_by_q;
     T decay;
 };
 
 template <class T>
-constexpr LayerWave<T> layer_wave(const std::complex<T>& q_squared, const T& phase_by_q) {
+constexpr LayerWave<T> layer_wave(const Complex<T>& q_squared, const T& phase_by_q) {
     using std::cos;
     using std::exp;
     using std::expm1;
     using std::sin;
     using std::sqrt;
-    const T real = q_squared.real();
-    if (q_squared.imag() == T(0)) {
+    const T real = q_squared.real;
+    if (q_squared.imag == T(0)) {
         const T q = real < T(0) ? sqrt(-real) : sqrt(real);
         const T phase = phase_by_q * q;
         if (phase == T(0)) {
-            return {T(1), phase_by_q, T(1)};
+            return {{T(1)}, {phase_by_q}, T(1)};
         }
         if (real > T(0)) {
-            return {cos(phase), sin(phase) / q, T(1)};
+            return {{cos(phase)}, {sin(phase) / q}, T(1)};
         }
         const T fall = expm1(T(-2) * phase);  // cosh φ = (1 + e^{−2φ}) e^φ / 2, and sinh φ likewise
-        return {T(1) + fall / T(2), -fall / (T(2) * q), exp(-phase)};
+        return {{T(1) + fall / T(2)}, {-fall / (T(2) * q)}, exp(-phase)};
     }
-    const std::complex<T> q = sqrt(q_squared);
-    const T turn = phase_by_q * q.real();
-    const T fading = phase_by_q * q.imag();
+    const Complex<T> q = sqrt_of_upper(q_squared);
+    const T turn = phase_by_q * q.real;
+    const T fading = phase_by_q * q.imag;
     const T fall = expm1(T(-2) * fading);
     const T cosh = T(1) + fall / T(2);
     const T sinh = -fall / T(2);
-    const std::complex<T> sine(sin(turn) * cosh, cos(turn) * sinh);
+    const Complex<T> sine{sin(turn) * cosh, cos(turn) * sinh};
     return {{cos(turn) * cosh, -sin(turn) * sinh}, sine / q, exp(-fading)};
 }
 
@@ -119,20 +102,20 @@ constexpr LayerWave<T> layer_wave(const std::complex<T>& q_squared, const T& pha
 /// first. So neither is infinite at grazing incidence.
 template <class T>
 struct StackFields {
-    std::complex<T> first;
-    std::complex<T> second;
+    Complex<T> first;
+    Complex<T> second;
     T scale;  // first and second are the fields times this, where the transmitted wave has amplitude 1
     T eta_near;
-    std::complex<T> eta_far;
+    Complex<T> eta_far;
 
-    [[nodiscard]] constexpr std::complex<T> incoming() const { return eta_near * first + second; }  // times 2 η_near
-    [[nodiscard]] constexpr std::complex<T> outgoing() const { return eta_near * first - second; }
-    [[nodiscard]] constexpr std::complex<T> reflected() const { return outgoing() / incoming(); }
-    [[nodiscard]] constexpr std::complex<T> transmitted() const { return T(2) * eta_near * scale / incoming(); }
+    [[nodiscard]] constexpr Complex<T> incoming() const { return eta_near * first + second; }  // times 2 η_near
+    [[nodiscard]] constexpr Complex<T> outgoing() const { return eta_near * first - second; }
+    [[nodiscard]] constexpr Complex<T> reflected() const { return outgoing() / incoming(); }
+    [[nodiscard]] constexpr Complex<T> transmitted() const { return Complex<T>{T(2) * eta_near * scale} / incoming(); }
     [[nodiscard]] constexpr CoatedPowers<T> powers() const {
-        const T incoming_power = std::norm(incoming());
-        return {.reflected = std::norm(outgoing()) / incoming_power,
-                .transmitted = T(4) * eta_near * eta_far.real() * scale / incoming_power * scale};
+        const T incoming_power = norm(incoming());
+        return {.reflected = norm(outgoing()) / incoming_power,
+                .transmitted = T(4) * eta_near * eta_far.real * scale / incoming_power * scale};
     }
 };
 
@@ -154,15 +137,15 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
     using std::abs;
     using std::acos;
     using std::sqrt;
-    using Complex = std::complex<T>;
+    using Complex = lensproof::Complex<T>;
     const T near = abs(from_scene_side ? n1 : n2);  // behind a mirror both are negative
     const T far = abs(from_scene_side ? n2 : n1);
     const T q_near = near * cos_incidence;
     const T far_squared = (far - near) * (far + near) + q_near * q_near;
-    const Complex q_far = far_squared < T(0) ? Complex(T(0), sqrt(-far_squared)) : Complex(sqrt(far_squared));
+    const Complex q_far = far_squared < T(0) ? Complex{T(0), sqrt(-far_squared)} : Complex{sqrt(far_squared)};
     PolarisedFields<T> fields{
-        .s = {.first = T(1), .second = q_far, .scale = T(1), .eta_near = q_near, .eta_far = q_far},
-        .p = {.first = T(1), .second = {}, .scale = T(1), .eta_near = q_near / (near * near), .eta_far = {}}};
+        .s = {.first = {T(1)}, .second = q_far, .scale = T(1), .eta_near = q_near, .eta_far = q_far},
+        .p = {.first = {T(1)}, .second = {}, .scale = T(1), .eta_near = q_near / (near * near), .eta_far = {}}};
     fields.p.eta_far = q_far / (far * far);
     fields.p.second = fields.p.eta_far;
     const T two_pi = T(2) * acos(T(-1));  // in every number type
@@ -171,17 +154,17 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
         const TraceLayer<T>& layer = coating.layers[from_scene_side ? count - 1 - i : i];
         const T& n = layer.index;
         const T& kappa = layer.extinction;
-        const Complex n_squared((n - kappa) * (n + kappa), T(2) * n * kappa);
-        const Complex q_squared((n - near) * (n + near) - kappa * kappa + q_near * q_near, n_squared.imag());
+        const Complex n_squared{(n - kappa) * (n + kappa), T(2) * n * kappa};
+        const Complex q_squared{(n - near) * (n + near) - kappa * kappa + q_near * q_near, n_squared.imag};
         const LayerWave<T> wave = layer_wave(q_squared, two_pi * layer.thickness);
-        const Complex sine_times_q = times(wave.sine_by_q, q_squared);
+        const Complex sine_times_q = wave.sine_by_q * q_squared;
         const auto cross = [&](StackFields<T>& of, const Complex& by_eta, const Complex& with_eta) {
-            const Complex to_first = times(by_eta, of.second);
-            const Complex to_second = times(with_eta, of.first);
-            of.first = times(wave.cosine, of.first) + Complex(to_first.imag(), -to_first.real());
-            of.second = times(wave.cosine, of.second) + Complex(to_second.imag(), -to_second.real());
+            const Complex to_first = by_eta * of.second;
+            const Complex to_second = with_eta * of.first;
+            of.first = wave.cosine * of.first + Complex{to_first.imag, -to_first.real};
+            of.second = wave.cosine * of.second + Complex{to_second.imag, -to_second.real};
             of.scale = of.scale * wave.decay;
-            const T size = abs(of.first.real()) + abs(of.first.imag()) + abs(of.second.real()) + abs(of.second.imag());
+            const T size = abs(of.first.real) + abs(of.first.imag) + abs(of.second.real) + abs(of.second.imag);
             if (const T large(1e10); size > large) {  // a mirror's fields grow with each of its layers
                 of.first = of.first / large;
                 of.second = of.second / large;
@@ -189,7 +172,7 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
             }
         };
         cross(fields.s, wave.sine_by_q, sine_times_q);
-        cross(fields.p, times(wave.sine_by_q, n_squared), sine_times_q / n_squared);
+        cross(fields.p, wave.sine_by_q * n_squared, sine_times_q / n_squared);
     }
     return fields;
 }
@@ -232,36 +215,6 @@ template <class T, class Layers = TraceLayers<T>>
 constexpr T coating_reflectance(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
                                 const T& cos_incidence, bool from_scene_side) {
     return coating_powers(coating, n1, n2, cos_incidence, from_scene_side).unpolarised().reflected;
-}
-
-/// Amplitudes in the place of powers. A stated reflectance gives their moduli, the bare surface their phases. A
-/// mirror's are those of a perfect conductor: in space that is unfolded at it both polarisations go on alike.
-template <class T, class Layers = TraceLayers<T>>
-constexpr CoatedAmplitudes<T> coating_amplitudes(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
-                                                 const T& cos_incidence, bool from_scene_side) {
-    using std::sqrt;
-    if (coating.is_mirror) {
-        const std::complex<T> passing(sqrt(coating.reflectance.value_or(T(1))));
-        return {.r_s = {}, .r_p = {}, .t_s = passing, .t_p = passing};
-    }
-    const PolarisedFields<T> fields = stack_fields(coating, n1, n2, cos_incidence, from_scene_side);
-    const T from_magnetic = from_scene_side ? n1 / n2 : n2 / n1;
-    CoatedAmplitudes<T> amplitudes{.r_s = fields.s.reflected(),
-                                   .r_p = fields.p.reflected(),
-                                   .t_s = fields.s.transmitted(),
-                                   .t_p = from_magnetic * fields.p.transmitted()};
-    if (coating.reflectance && !is_beyond_critical(n1, n2, cos_incidence, from_scene_side)) {
-        const auto scale_to = [](std::complex<T>& amplitude, const T& power, const T& stated) {
-            amplitude = power > T(0) ? amplitude * sqrt(stated / power) : std::complex<T>(sqrt(stated));
-        };
-        const CoatedPowers<T> s = fields.s.powers();
-        const CoatedPowers<T> p = fields.p.powers();
-        scale_to(amplitudes.r_s, s.reflected, *coating.reflectance);
-        scale_to(amplitudes.r_p, p.reflected, *coating.reflectance);
-        scale_to(amplitudes.t_s, s.transmitted, T(1) - *coating.reflectance);
-        scale_to(amplitudes.t_p, p.transmitted, T(1) - *coating.reflectance);
-    }
-    return amplitudes;
 }
 
 }  // namespace lensproof::optics

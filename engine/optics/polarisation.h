@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "engine/base/vec.h"
-#include "engine/optics/coating.h"
+#include "engine/optics/coating_amplitudes.h"
 
 namespace lensproof::optics {
 

@@ -10,6 +10,7 @@
 
 #include "engine/base/angle.h"
 #include "engine/base/csv.h"
+#include "engine/optics/coating_amplitudes.h"
 #include "engine/optics/multiprecision.h"
 #include "engine/optics/refract.h"
 #include "tests/places.h"
