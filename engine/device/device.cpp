@@ -73,6 +73,8 @@ Device::Found Device::find() {
     if (const cudaError_t status = cudaGetDeviceProperties(&properties, 0); status != cudaSuccess) {
         return {.device = {}, .why_not = cudaGetErrorString(status)};
     }
+    // Who waits leaves its core to others. Fails where the context is there already, which does no harm.
+    (void)cudaSetDeviceFlags(cudaDeviceScheduleBlockingSync);
     if (const cudaError_t status = cudaFree(nullptr); status != cudaSuccess) {  // makes the context
         return {.device = {}, .why_not = fmt::format("{}: {}", properties.name, cudaGetErrorString(status))};
     }

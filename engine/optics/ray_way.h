@@ -20,8 +20,9 @@ constexpr TracedRay<T> trace_along(const OfLens& lens, const RayWay<T, Path>& wa
         if (!way.reflections.empty()) {
             return trace_ghost<Direction::forward, rims>(lens, way.reflections, ray, way.mirrors, visit);
         }
-        return way.direction == Direction::forward ? trace_through<Direction::forward, rims, true>(lens, ray, visit)
-                                                   : trace_through<Direction::reverse, rims, true>(lens, ray, visit);
+        return way.direction == Direction::forward
+                   ? trace_through<Direction::forward, rims, LensMakeup::any>(lens, ray, visit)
+                   : trace_through<Direction::reverse, rims, LensMakeup::any>(lens, ray, visit);
     };
     return way.rims == Rims::clip ? with_rims.template operator()<Rims::clip>()
                                   : with_rims.template operator()<Rims::follow>();

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/base/branch.h"
 #include "engine/base/elementary.h"
 #include "engine/base/ray.h"
 #include "engine/optics/coating.h"
@@ -149,6 +150,9 @@ enum class Direction { forward, reverse };
 /// names the first rim that was passed.
 enum class Rims { clip, follow };
 
+/// What a lens may have besides centred, bare spheres of clear glass: nothing, glass that absorbs, or anything.
+enum class LensMakeup { clear_spheres, spheres, any };
+
 /// A ray after the last surface that it reached.
 template <class T>
 struct TracedRay {
@@ -180,10 +184,12 @@ constexpr T fading(const T& optical_depth) {
     }
 }
 
-/// `trace`, compiled once for lenses of centred, bare spheres of clear glass alone and once for all others, so that the
-/// former pay for nothing. `OfLens`: a TraceLens<T>, or one wavelength of a LensView<T>.
-template <Direction direction, Rims rims, bool has_specials, class OfLens, class T, class Visitor>
+/// `trace`, compiled for each makeup by itself, so that simple lenses pay for nothing. `OfLens`: a TraceLens<T>, or one
+/// wavelength of a LensView<T>.
+template <Direction direction, Rims rims, LensMakeup makeup, class OfLens, class T, class Visitor>
 constexpr TracedRay<T> trace_through(const OfLens& lens, const Ray<T>& ray, Visitor&& visit) {
+    constexpr bool has_specials = makeup == LensMakeup::any;
+    constexpr bool may_absorb = makeup != LensMakeup::clear_spheres;
     // The state in single variables, made a TracedRay only at the end, and two vectors for `intersect` rather than a
     // Ray: g++ 12 keeps the aggregates in memory, written 8 bytes at a time and copied 16 at a time, which processors
     // do not forward from store to load. That doubled the time of a surface (lensproof_benchmark, trace/tessar).
@@ -193,7 +199,7 @@ constexpr TracedRay<T> trace_through(const OfLens& lens, const Ray<T>& ray, Visi
     T optical_path = T(0);
     T at_surfaces = T(1);
     T optical_depth = T(0);
-    const bool absorbs = has_specials && !lens.attenuation.empty();
+    const bool absorbs = may_absorb && !lens.attenuation.empty();
     RayStatus status = RayStatus::ok;
     int ended_at = -1;
     const auto global = [&] { return Ray<T>{{origin.x, origin.y, origin.z + last_vertex_z}, ray_direction}; };
@@ -234,6 +240,9 @@ constexpr TracedRay<T> trace_through(const OfLens& lens, const Ray<T>& ray, Visi
         } else {
             const bool from_far = direction == Direction::forward ? surface.from_far_forward : surface.from_far_reverse;
             if (rims == Rims::follow || from_far) {
+                if constexpr (rims == Rims::clip) {
+                    stay_a_branch();
+                }
                 to_vertex = distance_to_vertex(from_vertex, own_direction);
                 from_vertex = from_vertex + to_vertex * own_direction;
             }
@@ -247,7 +256,7 @@ constexpr TracedRay<T> trace_through(const OfLens& lens, const Ray<T>& ray, Visi
         }
         const Vec3<T>& point = meeting.point;
         optical_path = optical_path + index_before * (to_vertex + meeting.distance);
-        if constexpr (has_specials) {
+        if constexpr (may_absorb) {
             if (absorbs) {
                 optical_depth = optical_depth + lens.attenuation_towards(index, direction == Direction::forward) *
                                                     (to_vertex + meeting.distance);
@@ -332,7 +341,7 @@ constexpr TracedRay<T> trace_through(const OfLens& lens, const Ray<T>& ray, Visi
 /// of that one's speed.
 template <Direction direction, Rims rims, class T, class Visitor>
 [[gnu::noinline]] constexpr TracedRay<T> trace_specials(const TraceLens<T>& lens, const Ray<T>& ray, Visitor& visit) {
-    return trace_through<direction, rims, true>(lens, ray, visit);
+    return trace_through<direction, rims, LensMakeup::any>(lens, ray, visit);
 }
 
 /// Traces `ray` (global lens space, direction of unit length) through `lens`. In air before the first surface.
@@ -341,8 +350,9 @@ template <Direction direction, Rims rims, class T, class Visitor>
 /// A missed surface has no point: its event repeats the ray as it was.
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T, class Visitor>
 constexpr TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
-    return lens.specials.empty() && lens.attenuation.empty() ? trace_through<direction, rims, false>(lens, ray, visit)
-                                                             : trace_specials<direction, rims>(lens, ray, visit);
+    return lens.specials.empty() && lens.attenuation.empty()
+               ? trace_through<direction, rims, LensMakeup::clear_spheres>(lens, ray, visit)
+               : trace_specials<direction, rims>(lens, ray, visit);
 }
 
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T>

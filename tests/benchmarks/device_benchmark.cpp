@@ -84,24 +84,28 @@ void time_loop(benchmark::State& state, const device::Device& device, const std:
                                      .surface = surface.there,
                                      .size = static_cast<int>(size)};
     };
+    const int loops = device.is_gpu() ? 16 : 1;  // a wait
     const auto run = [&] {
-        optics::with_trace_job<optics::Direction::forward>(
-            there.view(), columns(0), columns(6), optics::Rims::clip, carry,
-            [&](const auto& job) { buffer.queue().run(job, static_cast<int>(size)); });
+        for (int i = 0; i < loops; ++i) {
+            optics::with_trace_job<optics::Direction::forward>(
+                there.view(), columns(0), columns(6), optics::Rims::clip, carry,
+                [&](const auto& job) { buffer.queue().run(job, static_cast<int>(size)); });
+        }
         buffer.queue().wait();
     };
     run();
     while (state.KeepRunning()) {
         run();
     }
-    const double rays = static_cast<double>(state.iterations()) * static_cast<double>(size);
+    const double rays = static_cast<double>(state.iterations()) * loops * static_cast<double>(size);
     state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
     state.counters["ray-surfaces/s"] =
         benchmark::Counter(rays * static_cast<double>(lens.surfaces.size()), benchmark::Counter::kIsRate);
 }
 
 /// A whole render of an evenly lit chart, on all processors, with the device's help or without.
-void time_chart(benchmark::State& state, const std::shared_ptr<device::SharedDevice>& device, render::LensModel model) {
+void time_chart(benchmark::State& state, const std::shared_ptr<device::SharedDevice>& device, render::LensModel model,
+                std::uint32_t samples) {
     const render::Camera camera({.lens = "tessar",
                                  .f_number = 2.8,
                                  .focus_distance_mm = 2000.0,
@@ -112,7 +116,6 @@ void time_chart(benchmark::State& state, const std::shared_ptr<device::SharedDev
     const render::World world =
         render::even_chart({.pattern = scene::Checkerboard{12, 9, 110.0}}, {.distance_mm = 2000.0}, 1000.0, camera);
     const render::Render chart = render::integrator_named("chart").render({.world = &world, .camera = &camera});
-    const std::uint32_t samples = device == nullptr || device->device().is_gpu() ? 64 : 1;
     while (state.KeepRunning()) {
         benchmark::DoNotOptimize(render::render_film(chart, {.first = 0, .end = samples}, 0));
     }
@@ -134,13 +137,18 @@ void register_on(const std::shared_ptr<device::SharedDevice>& device) {
         add(lens, "float", 0.0F);
         add(lens, "double", 0.0);
     }
-    for (const render::LensModel model : {render::LensModel::exact, render::LensModel::exact_float}) {
-        for (const bool has_device : {false, true}) {
-            benchmark::RegisterBenchmark(
-                fmt::format("device/chart/{}/{}", render::name_of(model), has_device ? "device" : "processors").c_str(),
-                [=](benchmark::State& state) { time_chart(state, has_device ? device : nullptr, model); })
-                ->Unit(benchmark::kMillisecond)
-                ->UseRealTime();
+    const bool is_gpu = device->device().is_gpu();
+    for (const std::uint32_t samples : is_gpu ? std::vector<std::uint32_t>{64, 1024} : std::vector<std::uint32_t>{1}) {
+        for (const render::LensModel model : {render::LensModel::exact, render::LensModel::exact_float}) {
+            for (const bool has_device : {false, true}) {
+                benchmark::RegisterBenchmark(
+                    fmt::format("device/chart/{}/spp:{}/{}", render::name_of(model), samples,
+                                has_device ? "device" : "processors")
+                        .c_str(),
+                    [=](benchmark::State& state) { time_chart(state, has_device ? device : nullptr, model, samples); })
+                    ->Unit(benchmark::kMillisecond)
+                    ->UseRealTime();
+            }
         }
     }
 }

@@ -7,6 +7,8 @@
 - engine/README.md's table of the rooms says what engine/CMakeLists.txt does.
 - One door to the terminal: texts for people go through experiments/cli/terminal.h, which shows what would steer it.
 - Tests mirror the sources: a folder below tests/engine, tests/calibration and tests/experiments is a folder there.
+- What GPUs run (a .cu file and all that it includes) is without what nvcc 13 compiles to nothing, and says nothing of:
+  the arithmetic of std::complex (x / y becomes x), std::countr_zero and its kin (32, whatever the bits).
 - A namespace a file of tests, named as the file: they are compiled several to a text, some with another room's.
 - No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
   namespace are linked into one program, which is undefined behaviour that no linker tells. universal-ctags finds the
@@ -98,6 +100,20 @@ def unmirrored(home):
             if not (home / folder).is_dir()]
 
 
+def lost_on_gpus(home):
+    found, seen, todo = [], set(), sorted(file for house in HOUSES for file in (home / house).rglob("*.cu"))
+    while todo:
+        file = todo.pop()
+        if file in seen or not file.exists():
+            continue
+        seen.add(file)
+        text = re.sub(r"//.*", "", file.read_text())
+        todo += [home / included for included in re.findall(r'#\s*include\s*"([^"]+)"', text)]
+        found += [f"{file.relative_to(home)}, which GPUs run, has {lost}, which nvcc drops"
+                  for lost in re.findall(r"std::(?:complex|count[lr]_(?:zero|one))\b|__builtin_c[lt]z\w*", text)]
+    return found
+
+
 def crowded(home):
     return [f"{file.relative_to(home)} opens no namespace lensproof::…::{file.stem}"
             for file in sorted((home / "tests").rglob("*_test.cpp"))
@@ -145,8 +161,11 @@ def main():
                       "engine/README.md": "| `optics` | lenses | `base` |\n"}, "optics uses ['base']")
     planted(unmirrored, {"engine/optics/lens.h": "", "tests/engine/io/lens_test.cpp": ""}, "tests/engine/io")
     planted(crowded, {"tests/cli/run_test.cpp": "namespace lensproof {\n"}, "lensproof::…::run_test")
+    planted(lost_on_gpus, {"engine/optics/a_job.cu": '#include "engine/optics/film.h"\n',
+                           "engine/optics/film.h": "// std::countr_zero\nstd::complex<T> r;\n"}, "film.h, which GPUs run, has std::complex")
     planted(past_the_door, {"experiments/cli/a_command.cpp": 'fmt::print("{}\\n", name);'}, "fmt::print")
     faults = circles(home) + misplaced(home) + mistold(home) + past_the_door(home) + unmirrored(home) + crowded(home)
+    faults += lost_on_gpus(home)
     has_ctags = shutil.which("ctags") and "Universal" in subprocess.run(
         ["ctags", "--version"], capture_output=True, text=True).stdout
     if has_ctags:

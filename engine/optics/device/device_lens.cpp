@@ -37,16 +37,28 @@ typename LensView<T>::Special special_on_device(const device::Parcel& parcel, co
             .thin = from.thin};
 }
 
-/// What depends on the wavelength, in the order of LensView.
 template <class T>
-std::vector<T> index_table(const SpectralLens<T>& lens) {
-    std::vector<T> table;
-    const auto append = [&](const T* column) { table.insert(table.end(), column, column + lens.wavelengths()); };
+std::vector<typename LensView<T>::Surface> surface_table(const TraceLens<T>& lens) {
+    using Entry = typename LensView<T>::Surface;
+    std::vector<Entry> table;
+    for (const TraceSurface<T>& surface : lens.surfaces) {
+        table.push_back({.curvature = surface.curvature,
+                         .vertex_z = surface.vertex_z,
+                         .semi_diameter_squared = surface.semi_diameter_squared,
+                         .special_and_notes = 8 * surface.special + (surface.is_stop ? Entry::kIsStop : 0) +
+                                              (surface.from_far_forward ? Entry::kFromFarForward : 0) +
+                                              (surface.from_far_reverse ? Entry::kFromFarReverse : 0)});
+    }
+    return table;
+}
+
+template <class T>
+std::vector<typename LensView<T>::Indices> index_table(const SpectralLens<T>& lens) {
+    std::vector<typename LensView<T>::Indices> table;
     for (const typename SpectralLens<T>::Indices& of : lens.indices()) {
-        append(of.before);
-        append(of.after);
-        append(of.forward_ratio);
-        append(of.reverse_ratio);
+        for (int i = 0; i < lens.wavelengths(); ++i) {
+            table.push_back({of.before[i], of.after[i], of.forward_ratio[i], of.reverse_ratio[i]});
+        }
     }
     return table;
 }
@@ -68,7 +80,7 @@ std::vector<T> attenuation_table(const SpectralLens<T>& lens) {
 
 template <class T>
 DeviceLens<T>::DeviceLens(const device::Device& device, const SpectralLens<T>& lens) {
-    const auto surfaces = parcel_.add(lens.at().front().surfaces);
+    const auto surfaces = parcel_.add(surface_table(lens.at().front()));
     const auto indices = parcel_.add(index_table(lens));
     const auto attenuation = parcel_.add(attenuation_table(lens));
     std::vector<SpecialPlaces<T>> places;

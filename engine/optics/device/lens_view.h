@@ -9,24 +9,44 @@
 
 namespace lensproof::optics {
 
-/// A SpectralLens laid out in memory that a device reaches (DeviceLens). What depends on the wavelength lies side by
-/// side for all of them, so that neighbours of different wavelengths read from one line of memory.
+/// A SpectralLens laid out in memory that a device reaches (DeviceLens): what a ray reads at a surface lies together,
+/// in the words that a GPU's memory is read in.
 template <class T>
 struct LensView {
     using Special = SpecialSurface<T, std::span<const TraceLayer<T>>, StopOpening>;
-    enum Column { kBefore, kAfter, kForwardRatio, kReverseRatio, kColumns };
 
-    const TraceSurface<T>* surfaces = nullptr;  // of the first wavelength
-    const T* indices = nullptr;                 // [surface][Column][wavelength]
-    const Special* specials = nullptr;          // [wavelength][special]
-    const T* attenuation = nullptr;             // [medium, that in front of the first surface too][wavelength]; or null
+    struct alignas(4 * sizeof(T)) Surface {  // at every wavelength
+        T curvature;
+        T vertex_z;
+        T semi_diameter_squared;
+        std::int32_t special_and_notes;  // 8 · special and, of these, what holds
+
+        static constexpr std::int32_t kIsStop = 1;
+        static constexpr std::int32_t kFromFarForward = 2;
+        static constexpr std::int32_t kFromFarReverse = 4;
+    };
+    struct alignas(4 * sizeof(T)) Indices {  // at one
+        T before;
+        T after;
+        T forward_ratio;
+        T reverse_ratio;
+    };
+
+    const Surface* surfaces = nullptr;
+    const Indices* indices = nullptr;   // [surface][wavelength]
+    const Special* specials = nullptr;  // [wavelength][special]
+    const T* attenuation = nullptr;     // [medium, that in front of the first surface too][wavelength]; or null
     int surface_count = 0;
     int special_count = 0;
     int wavelengths = 0;
     T image_z = T(0);
 
-    /// Whether `trace_through` needs its `has_specials`.
-    [[nodiscard]] constexpr bool has_more_than_spheres() const { return special_count > 0 || attenuation != nullptr; }
+    /// What `trace_through` has to look for.
+    [[nodiscard]] constexpr LensMakeup makeup() const {
+        return special_count > 0        ? LensMakeup::any
+               : attenuation != nullptr ? LensMakeup::spheres
+                                        : LensMakeup::clear_spheres;
+    }
 
     /// What a TraceLens is to the tracer, of one wavelength.
     struct AtWavelength {
@@ -37,15 +57,20 @@ struct LensView {
             int wavelength;
 
             [[nodiscard]] constexpr std::size_t size() const { return static_cast<std::size_t>(lens.surface_count); }
-            constexpr TraceSurface<T> operator[](std::size_t i) const {
-                TraceSurface<T> surface = lens.surfaces[i];
-                const auto stride = static_cast<std::size_t>(lens.wavelengths);
-                const T* at = lens.indices + i * kColumns * stride + static_cast<std::size_t>(wavelength);
-                surface.index_before = at[kBefore * stride];
-                surface.index_after = at[kAfter * stride];
-                surface.forward_ratio = at[kForwardRatio * stride];
-                surface.reverse_ratio = at[kReverseRatio * stride];
-                return surface;
+            constexpr TraceSurface<T> operator[](int i) const {
+                const Surface surface = lens.surfaces[i];
+                const Indices& index = lens.indices[i * lens.wavelengths + wavelength];
+                return {.curvature = surface.curvature,
+                        .vertex_z = surface.vertex_z,
+                        .semi_diameter_squared = surface.semi_diameter_squared,
+                        .index_before = index.before,
+                        .index_after = index.after,
+                        .forward_ratio = index.forward_ratio,
+                        .reverse_ratio = index.reverse_ratio,
+                        .is_stop = (surface.special_and_notes & Surface::kIsStop) != 0,
+                        .special = surface.special_and_notes >> 3,
+                        .from_far_forward = (surface.special_and_notes & Surface::kFromFarForward) != 0,
+                        .from_far_reverse = (surface.special_and_notes & Surface::kFromFarReverse) != 0};
             }
         };
         struct Attenuation {
@@ -60,8 +85,7 @@ struct LensView {
         T image_z;
 
         [[nodiscard]] constexpr const T& attenuation_towards(int surface, bool forward) const {
-            return attenuation.of_wavelength[static_cast<std::size_t>(forward ? surface : surface + 1) *
-                                             static_cast<std::size_t>(surfaces.lens.wavelengths)];
+            return attenuation.of_wavelength[(forward ? surface : surface + 1) * surfaces.lens.wavelengths];
         }
     };
 

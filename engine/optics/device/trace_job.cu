@@ -3,11 +3,12 @@
 
 using namespace lensproof::optics;
 
-#define LENSPROOF_TRACE_JOBS(T, direction, rims)                                     \
-    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::geometry, false>);      \
-    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::transmittance, false>); \
-    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, false>);           \
-    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, true>)
+#define LENSPROOF_TRACE_JOBS(T, direction, rims)                                                         \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::geometry, LensMakeup::clear_spheres>);      \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::transmittance, LensMakeup::clear_spheres>); \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, LensMakeup::clear_spheres>);           \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, LensMakeup::spheres>);                 \
+    LENSPROOF_DEVICE_JOB(TraceJob<T, direction, rims, Carry::all, LensMakeup::any>)
 
 LENSPROOF_TRACE_JOBS(float, Direction::forward, Rims::clip);
 LENSPROOF_TRACE_JOBS(float, Direction::reverse, Rims::clip);

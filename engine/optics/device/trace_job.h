@@ -9,8 +9,7 @@ namespace lensproof::optics {
 
 /// As `trace_columns`, from columns of the device's memory to others, or to the same; those that `carry` does not ask
 /// for are not looked at.
-/// `has_specials`: as `trace_through` has it.
-template <class T, Direction direction, Rims rims, Carry carry, bool has_specials>
+template <class T, Direction direction, Rims rims, Carry carry, LensMakeup makeup>
 struct TraceJob {
     static constexpr int kThreadsPerBlock = 128;
 
@@ -22,8 +21,7 @@ struct TraceJob {
         const auto i = static_cast<std::size_t>(item);
         const Ray<T> ray{{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
         const typename LensView<T>::AtWavelength at = lens.at(lens.wavelengths > 1 ? rays.wavelength[i] : 0);
-        const TracedRay<T> traced =
-            trace_through<direction, rims, has_specials>(at, ray, [](const SurfaceEvent<T>&) {});
+        const TracedRay<T> traced = trace_through<direction, rims, makeup>(at, ray, [](const SurfaceEvent<T>&) {});
         to.x[i] = traced.ray.origin.x;
         to.y[i] = traced.ray.origin.y;
         to.z[i] = traced.ray.origin.z;
@@ -41,20 +39,23 @@ struct TraceJob {
     }
 };
 
-/// The job that `settings` ask for, of those that are compiled: lenses with more than spheres carry all, which is the
-/// least of their cost.
+/// The job that `carry` asks for, of those that are compiled: where more than geometry is carried, a lens of more than
+/// clear spheres carries all, which is the least of its cost.
 template <Direction direction, class T, class Use>
 void with_trace_job(const LensView<T>& lens, const RayColumns<T>& rays, const RayColumns<T>& to, Rims rims, Carry carry,
                     const Use& use) {
     const auto with_rims = [&]<Rims with>() {
-        if (lens.has_more_than_spheres()) {
-            use(TraceJob<T, direction, with, Carry::all, true>{lens, rays, to});
+        const LensMakeup makeup = lens.makeup();
+        if (makeup == LensMakeup::any) {
+            use(TraceJob<T, direction, with, Carry::all, LensMakeup::any>{lens, rays, to});
         } else if (carry == Carry::geometry) {
-            use(TraceJob<T, direction, with, Carry::geometry, false>{lens, rays, to});
+            use(TraceJob<T, direction, with, Carry::geometry, LensMakeup::clear_spheres>{lens, rays, to});
+        } else if (makeup == LensMakeup::spheres) {
+            use(TraceJob<T, direction, with, Carry::all, LensMakeup::spheres>{lens, rays, to});
         } else if (carry == Carry::transmittance) {
-            use(TraceJob<T, direction, with, Carry::transmittance, false>{lens, rays, to});
+            use(TraceJob<T, direction, with, Carry::transmittance, LensMakeup::clear_spheres>{lens, rays, to});
         } else {
-            use(TraceJob<T, direction, with, Carry::all, false>{lens, rays, to});
+            use(TraceJob<T, direction, with, Carry::all, LensMakeup::clear_spheres>{lens, rays, to});
         }
     };
     rims == Rims::clip ? with_rims.template operator()<Rims::clip>() : with_rims.template operator()<Rims::follow>();

@@ -36,11 +36,11 @@ struct CameraPathBuffer {
     optics::PacketColumn<std::uint32_t> pixel;       // row by row from the top left
     optics::PacketColumn<std::uint32_t> sample;      // of the pixel
     optics::PacketColumn<std::uint16_t> wavelength;  // which of the camera's: the hero's
-    optics::PacketColumn<double> film_x;             // mm, in lens space
+    optics::PacketColumn<double> film_x;             // mm, in lens space; not set by a device for PathCarry::hero
     optics::PacketColumn<double> film_y;
-    optics::PacketColumn<double> weight;          // τ cos⁴θ / Z² / the pdf of the pupil point · the filter's, sr
-    optics::PacketColumn<double> etendue;         // of paths out of a LensPaths: cos⁴θ / Z² / that pdf, sr
-    optics::RayBatch<double>::Vectors origin;     // on the first surface, mm, in lens space
+    optics::PacketColumn<double> weight;       // τ cos⁴θ / Z² / the pdf of the pupil point · the filter's, sr
+    optics::PacketColumn<double> etendue;      // of paths out of a LensPaths: cos⁴θ / Z² / that pdf, sr; as film_x
+    optics::RayBatch<double>::Vectors origin;  // on the first surface, mm, in lens space
     optics::RayBatch<double>::Vectors direction;  // away from the lens, of unit length
     /// Of paths that carry them: what each counts at its wavelengths, sr, the mean over which is the sample; and the
     /// pdf that it was drawn with, per etendue times a pixel's area.

@@ -22,7 +22,7 @@ DeviceCamera<T>::DeviceCamera(const device::Device& device, const optics::Spectr
     const auto panel_fractions = add(tables_.panel_fractions, pupil::PupilSliceTables::kPanels + 1);
     const auto panel_across = add(tables_.panel_across, sizes.panel_across);
     const auto per_panel = add(tables_.per_panel, pupil::PupilSliceTables::kPanels);
-    const auto directions = add(&sampler_detail::kDirections, 1);
+    const auto sobol_points = add(&sampler_detail::kDigitPoints, 1);
     parcel_.allocate(device);
     parcel_.send(device);
     tables_.per_end = parcel_.address(per_end);
@@ -34,20 +34,22 @@ DeviceCamera<T>::DeviceCamera(const device::Device& device, const optics::Spectr
     tables_.panel_fractions = parcel_.address(panel_fractions);
     tables_.panel_across = parcel_.address(panel_across);
     tables_.per_panel = parcel_.address(per_panel);
-    directions_ = parcel_.address(directions);
+    sobol_points_ = parcel_.address(sobol_points);
 }
 
 namespace {
 
 /// Calls use(column) with each column's place in any set of them.
 template <class Use>
-void for_each_column(const Use& use) {
+void for_each_column(bool has_film, const Use& use) {
     use(&DevicePathColumns::fate);
     use(&DevicePathColumns::wavelength);
-    use(&DevicePathColumns::film_x);
-    use(&DevicePathColumns::film_y);
+    if (has_film) {
+        use(&DevicePathColumns::film_x);
+        use(&DevicePathColumns::film_y);
+        use(&DevicePathColumns::etendue);
+    }
     use(&DevicePathColumns::weight);
-    use(&DevicePathColumns::etendue);
     use(&DevicePathColumns::x);
     use(&DevicePathColumns::y);
     use(&DevicePathColumns::z);
@@ -58,7 +60,7 @@ void for_each_column(const Use& use) {
 
 std::size_t column_bytes(std::size_t paths) {
     std::size_t bytes = 0;
-    for_each_column([&]<class Number>(Number* DevicePathColumns::* /*column*/) {
+    for_each_column(true, [&]<class Number>(Number* DevicePathColumns::* /*column*/) {
         bytes += device::Buffer::bytes_for<Number>(paths);
     });
     return bytes;
@@ -66,13 +68,43 @@ std::size_t column_bytes(std::size_t paths) {
 
 }  // namespace
 
-template <class T>
-DevicePaths<T>::Piece::Piece(const device::Device& device) : buffer(device, column_bytes(kPiece)) {}
+DevicePathPiece::DevicePathPiece(const device::Device& device) : buffer(device, column_bytes(kMost)) {}
+
+std::unique_ptr<DevicePathPiece> SparePathPieces::take(const device::Device& device) {
+    {
+        const std::scoped_lock lock(mutex_);
+        if (!spare_.empty()) {
+            std::unique_ptr<DevicePathPiece> piece = std::move(spare_.back());
+            spare_.pop_back();
+            return piece;
+        }
+    }
+    return std::make_unique<DevicePathPiece>(device);
+}
+
+void SparePathPieces::give_back(std::unique_ptr<DevicePathPiece> piece) {
+    if (piece) {
+        const std::scoped_lock lock(mutex_);
+        spare_.push_back(std::move(piece));
+    }
+}
 
 template <class T>
 DevicePaths<T>::DevicePaths(device::SharedDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film,
-                            double pupil_z, BasicLensPaths<T> fallback)
-    : device_(&device), camera_(&camera), film_(film), pupil_z_(pupil_z), fallback_(std::move(fallback)) {}
+                            double pupil_z, bool has_film, BasicLensPaths<T> fallback)
+    : device_(&device),
+      camera_(&camera),
+      film_(film),
+      pupil_z_(pupil_z),
+      has_film_(has_film),
+      fallback_(std::move(fallback)) {}
+
+template <class T>
+DevicePaths<T>::~DevicePaths() {
+    for (std::unique_ptr<Piece>& piece : pieces_) {
+        camera_->spare_pieces().give_back(std::move(piece));
+    }
+}
 
 template <class T>
 void DevicePaths<T>::start(const CameraPathRange& range) {
@@ -82,25 +114,25 @@ void DevicePaths<T>::start(const CameraPathRange& range) {
     current_ = 0;
     if (!device_->has_failed()) {
         try {
-            if (!pieces_) {
-                pieces_.emplace(std::array<Piece, 2>{Piece(device_->device()), Piece(device_->device())});
-            }
-            for (Piece& piece : *pieces_) {
-                start_piece(piece);
+            for (std::unique_ptr<Piece>& piece : pieces_) {
+                if (!piece) {
+                    piece = camera_->spare_pieces().take(device_->device());
+                }
+                start_piece(*piece);
             }
             return;
         } catch (const device::Error& error) {
             device_->fail(error.what());
         }
     }
-    pieces_.reset();
+    pieces_ = {};
     fallback_.start(range);
 }
 
 template <class T>
 void DevicePaths<T>::start_piece(Piece& piece) {
     piece.first = started_pieces_;
-    piece.size = static_cast<std::size_t>(std::min<std::uint64_t>(kPiece, range_.size() - started_pieces_));
+    piece.size = static_cast<std::size_t>(std::min<std::uint64_t>(Piece::kMost, range_.size() - started_pieces_));
     piece.next = 0;
     piece.is_here = false;
     started_pieces_ += piece.size;
@@ -108,54 +140,79 @@ void DevicePaths<T>::start_piece(Piece& piece) {
         return;
     }
     piece.buffer.clear();
-    for_each_column([&]<class Number>(Number* DevicePathColumns::*column) {
+    piece.there = {};
+    for_each_column(has_film_, [&]<class Number>(Number* DevicePathColumns::*column) {
         const device::Column<Number> made = piece.buffer.template column<Number>(piece.size);
         piece.here.*column = made.here;
         piece.there.*column = made.there;
     });
-    const auto run = [&]<bool has_specials>() {
-        piece.buffer.queue().run(PathJob<T, has_specials>{.lens = camera_->lens(),
-                                                          .pupil = camera_->pupil(),
-                                                          .pupil_z = pupil_z_,
-                                                          .film_z = static_cast<double>(camera_->lens().image_z),
-                                                          .directions = camera_->directions(),
-                                                          .sensor = film_.sensor,
-                                                          .seed = film_.seed,
-                                                          .range = range_,
-                                                          .first = piece.first,
-                                                          .paths = piece.there},
+    const auto run = [&]<optics::LensMakeup makeup>() {
+        piece.buffer.queue().run(PathJob<T, makeup>{.lens = camera_->lens(),
+                                                    .pupil = camera_->pupil(),
+                                                    .pupil_z = pupil_z_,
+                                                    .film_z = static_cast<double>(camera_->lens().image_z),
+                                                    .sobol_points = camera_->sobol_points(),
+                                                    .sensor = film_.sensor,
+                                                    .seed = film_.seed,
+                                                    .range = range_,
+                                                    .first = piece.first,
+                                                    .paths = piece.there},
                                  static_cast<int>(piece.size));
     };
-    camera_->lens().has_more_than_spheres() ? run.template operator()<true>() : run.template operator()<false>();
+    using enum optics::LensMakeup;
+    switch (camera_->lens().makeup()) {
+        case clear_spheres:
+            run.template operator()<clear_spheres>();
+            break;
+        case spheres:
+            run.template operator()<spheres>();
+            break;
+        case any:
+            run.template operator()<any>();
+            break;
+    }
     piece.buffer.download();
 }
 
 template <class T>
 void DevicePaths<T>::give(Piece& piece, CameraPathBuffer& buffer) {
     const DevicePathColumns& from = piece.here;
+    const auto first = static_cast<std::size_t>(buffer.size);
+    const auto room = static_cast<std::size_t>(buffer.capacity) - first;
+    leaving_.resize(std::max(leaving_.size(), room));
+    std::size_t leaving = 0;
     std::size_t next = piece.next;
-    for (; next < piece.size && buffer.size < buffer.capacity; ++next) {
-        if (from.fate[next] != PathFate::leaves) {
-            started_ += from.fate[next] == PathFate::stopped ? 1 : 0;
-            continue;
+    CameraPathRange::Place place = range_.place(piece.first + next);
+    for (; next < piece.size && leaving < room; ++next, place = range_.after(place)) {
+        started_ += from.fate[next] == PathFate::unlit ? 0 : 1;
+        if (from.fate[next] == PathFate::leaves) {
+            buffer.pixel[first + leaving] = place.pixel;
+            buffer.sample[first + leaving] = range_.first_sample + place.sample;
+            leaving_[leaving++] = static_cast<std::uint32_t>(next);
         }
-        ++started_;
-        const CameraPathRange::Place place = range_.place(piece.first + next);
-        const auto to = static_cast<std::size_t>(buffer.size++);
-        buffer.pixel[to] = place.pixel;
-        buffer.sample[to] = range_.first_sample + place.sample;
-        buffer.wavelength[to] = from.wavelength[next];
-        buffer.film_x[to] = from.film_x[next];
-        buffer.film_y[to] = from.film_y[next];
-        buffer.weight[to] = from.weight[next];
-        buffer.etendue[to] = from.etendue[next];
-        buffer.origin.x[to] = from.x[next];
-        buffer.origin.y[to] = from.y[next];
-        buffer.origin.z[to] = from.z[next];
-        buffer.direction.x[to] = from.dx[next];
-        buffer.direction.y[to] = from.dy[next];
-        buffer.direction.z[to] = from.dz[next];
     }
+    // Column by column: plain loops, in which nothing is looked up twice.
+    const auto copy = [&](const auto* column, auto& to) {
+        auto* at = to.data() + first;
+        const std::uint32_t* path = leaving_.data();
+        for (std::size_t i = 0; i < leaving; ++i) {
+            at[i] = column[path[i]];
+        }
+    };
+    copy(from.wavelength, buffer.wavelength);
+    if (has_film_) {
+        copy(from.film_x, buffer.film_x);
+        copy(from.film_y, buffer.film_y);
+        copy(from.etendue, buffer.etendue);
+    }
+    copy(from.weight, buffer.weight);
+    copy(from.x, buffer.origin.x);
+    copy(from.y, buffer.origin.y);
+    copy(from.z, buffer.origin.z);
+    copy(from.dx, buffer.direction.x);
+    copy(from.dy, buffer.direction.y);
+    copy(from.dz, buffer.direction.z);
+    buffer.size += static_cast<int>(leaving);
     given_ += next - piece.next;
     piece.next = next;
 }
@@ -163,7 +220,7 @@ void DevicePaths<T>::give(Piece& piece, CameraPathBuffer& buffer) {
 template <class T>
 void DevicePaths<T>::fill_from_device(CameraPathBuffer& buffer) {
     while (given_ < range_.size() && buffer.size < buffer.capacity) {
-        Piece& piece = (*pieces_)[current_];
+        Piece& piece = *pieces_[current_];
         if (!piece.is_here) {
             piece.buffer.queue().wait();
             piece.is_here = true;
@@ -178,7 +235,7 @@ void DevicePaths<T>::fill_from_device(CameraPathBuffer& buffer) {
 
 template <class T>
 bool DevicePaths<T>::fill(CameraPathBuffer& buffer) {
-    if (pieces_) {
+    if (pieces_.front()) {
         buffer.size = 0;
         try {
             fill_from_device(buffer);
@@ -186,7 +243,7 @@ bool DevicePaths<T>::fill(CameraPathBuffer& buffer) {
         } catch (const device::Error& error) {
             device_->fail(error.what());
         }
-        pieces_.reset();
+        pieces_ = {};
         fallback_.start(range_, given_);
         if (buffer.size > 0) {  // what the device gave before it failed
             return true;

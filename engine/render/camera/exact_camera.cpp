@@ -51,17 +51,18 @@ void ExactCamera::put_on_device() {
 
 ExactCamera::Paths::Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
                           PathCarry carry)
-    : traced_(traced(camera, film, grid)), carry_(carry), is_shared_(film.filter.is_box()) {}
+    : traced_(traced(camera, film, grid, carry)), carry_(carry), is_shared_(film.filter.is_box()) {}
 
 ExactCamera::Paths::TracedInEither ExactCamera::Paths::traced(const ExactCamera& camera, const FilmSampling& film,
-                                                              const spectral::SpectralGrid& grid) {
+                                                              const spectral::SpectralGrid& grid, PathCarry carry) {
     const auto in = [&]<class T>(const optics::SpectralLens<T>& lens) -> TracedInEither {
         BasicLensPaths<T> paths(film, lens, camera.slices_);
         BasicSharedRays<T> shared(grid, lens, camera.slices_, film.sensor, film.filter.is_box());
         if (camera.on_device_ && film.filter.is_box()) {
-            return Traced<DevicePaths, T>{.paths = {*camera.device_, std::get<DeviceCamera<T>>(*camera.on_device_),
-                                                    film, camera.pupil_.plane_z(), std::move(paths)},
-                                          .shared = std::move(shared)};
+            return Traced<DevicePaths, T>{
+                .paths = {*camera.device_, std::get<DeviceCamera<T>>(*camera.on_device_), film, camera.pupil_.plane_z(),
+                          carry != PathCarry::hero, std::move(paths)},
+                .shared = std::move(shared)};
         }
         return Traced<BasicLensPaths, T>{.paths = std::move(paths), .shared = std::move(shared)};
     };

@@ -53,7 +53,7 @@ class ExactCamera {
         using TracedInEither = std::variant<Traced<BasicLensPaths, double>, Traced<BasicLensPaths, float>,
                                             Traced<DevicePaths, double>, Traced<DevicePaths, float>>;
         static TracedInEither traced(const ExactCamera& camera, const FilmSampling& film,
-                                     const spectral::SpectralGrid& grid);
+                                     const spectral::SpectralGrid& grid, PathCarry carry);
 
         TracedInEither traced_;
         PathCarry carry_;

@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 
 namespace lensproof::render {
@@ -82,28 +81,26 @@ using PointBits = std::array<std::uint32_t, kDimensions>;
 
 /// The point of the unscrambled sequence, with its bits in reverse, as the scramble wants them. It is linear in the
 /// bits of `sample`: the point of a ^ b is that of a ^ that of b.
-constexpr PointBits sobol_point(std::uint32_t sample, const DirectionNumbers& directions) {
+constexpr PointBits sobol_point_by_bits(std::uint32_t sample) {
     PointBits x{};
-    for (std::uint32_t rest = sample; rest != 0; rest &= rest - 1) {
-        for (int d = 0; d < kDimensions; ++d) {
-            x[d] ^= directions[d][std::countr_zero(rest)];
+    for (int d = 0; d < kDimensions; ++d) {
+        for (unsigned bit = 0; bit < 32; ++bit) {
+            x[d] ^= ((sample >> bit) & 1U) * kDirections[d][bit];
         }
-    }
-    for (std::uint32_t& bits : x) {
-        bits = reversed_bits(bits);
+        x[d] = reversed_bits(x[d]);
     }
     return x;
 }
 
+inline constexpr int kPlaces = 8;
 /// Those of the samples of four bits, at each of their eight places.
-constexpr int kPlaces = 8;
 using DigitPoints = std::array<std::array<PointBits, 16>, kPlaces>;
 
 constexpr DigitPoints make_digit_points() {
     DigitPoints points{};
     for (std::uint32_t place = 0; place < kPlaces; ++place) {
         for (std::uint32_t digit = 0; digit < 16; ++digit) {
-            points[place][digit] = sobol_point(digit << (4 * place), kDirections);
+            points[place][digit] = sobol_point_by_bits(digit << (4 * place));
         }
     }
     return points;
@@ -111,12 +108,12 @@ constexpr DigitPoints make_digit_points() {
 
 inline constexpr DigitPoints kDigitPoints = make_digit_points();
 
-/// The same in an eighth of the steps.
-[[gnu::always_inline]] constexpr PointBits sobol_point(std::uint32_t sample) {
+/// The same in an eighth of the steps. `points`: kDigitPoints, from wherever they can be read.
+[[gnu::always_inline]] constexpr PointBits sobol_point(std::uint32_t sample, const DigitPoints& points = kDigitPoints) {
     PointBits x{};
     for (int place = 0; place < kPlaces; ++place) {
         for (int d = 0; d < kDimensions; ++d) {
-            x[d] ^= kDigitPoints[place][(sample >> (4 * place)) & 15U][d];
+            x[d] ^= points[place][(sample >> (4 * place)) & 15U][d];
         }
     }
     return x;
@@ -174,14 +171,10 @@ class PixelSampler {
         return static_cast<std::uint32_t>(sampler_detail::mixed(stream + static_cast<std::uint64_t>(dimension)) >> 32U);
     }
 
-    /// Inlined, so that numbers which nobody asks for are not made.
-    [[nodiscard, gnu::always_inline]] constexpr std::array<double, kDimensions> point(std::uint32_t sample) const {
-        return scrambled(sampler_detail::sobol_point(sample));
-    }
-    /// The same by Sobol's `directions`, from wherever they can be read.
-    [[nodiscard]] constexpr std::array<double, kDimensions> point(
-        std::uint32_t sample, const sampler_detail::DirectionNumbers& directions) const {
-        return scrambled(sampler_detail::sobol_point(sample, directions));
+    /// Inlined, so that numbers which nobody asks for are not made. `points`: as `sobol_point` has them.
+    [[nodiscard, gnu::always_inline]] constexpr std::array<double, kDimensions> point(
+        std::uint32_t sample, const sampler_detail::DigitPoints& points = sampler_detail::kDigitPoints) const {
+        return scrambled(sampler_detail::sobol_point(sample, points));
     }
 
     /// The points of the samples `first` … `first` + `count` − 1, a column a dimension: what `point` gives, in a

@@ -139,7 +139,7 @@ Exact exact_path(const optics::TraceLens<Exact>& lens, const optics::FieldBundle
         ray.direction = normalized(through - ray.origin);
     }
     const optics::TracedRay<Exact> traced =
-        optics::trace_through<optics::Direction::forward, optics::Rims::follow, false>(
+        optics::trace_through<optics::Direction::forward, optics::Rims::follow, optics::LensMakeup::clear_spheres>(
             lens, ray, [](const optics::SurfaceEvent<Exact>&) {});
     const Vec3<Exact> from_centre = traced.ray.origin - optics::convert_vector<Exact>(sphere.centre);
     const Exact radius = Exact(1) / Exact(sphere.curvature);

@@ -64,6 +64,18 @@ struct CameraPathRange {
                 .sample = static_cast<std::uint32_t>(i - std::uint64_t{number} * samples),
                 .row = row};
     }
+    /// The one after it.
+    [[nodiscard]] constexpr Place after(Place place) const {
+        if (++place.sample == samples) {
+            place.sample = 0;
+            ++place.pixel;
+            if (place.pixel - first_pixel - place.row * (pixels + beside_row) == pixels) {
+                ++place.row;
+                place.pixel += beside_row;
+            }
+        }
+        return place;
+    }
 };
 
 /// The next samples to draw: `samples` of each pixel from `first_sample` on.

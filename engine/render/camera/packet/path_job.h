@@ -21,10 +21,10 @@ enum class PathFate : std::uint8_t {
 struct DevicePathColumns {
     PathFate* fate = nullptr;
     std::uint16_t* wavelength = nullptr;
-    double* film_x = nullptr;
+    double* film_x = nullptr;  // null, with film_y and etendue: not asked for
     double* film_y = nullptr;
-    double* weight = nullptr;
     double* etendue = nullptr;
+    double* weight = nullptr;
     double* x = nullptr;
     double* y = nullptr;
     double* z = nullptr;
@@ -35,7 +35,7 @@ struct DevicePathColumns {
 
 /// The samples of a range from `first` on, drawn from the pixels themselves (the box filter). Every path has the bits
 /// of BasicLensPaths, which does the same in loops over packets.
-template <class T, bool has_specials>
+template <class T, optics::LensMakeup makeup>
 struct PathJob {
     static constexpr int kThreadsPerBlock = 128;
 
@@ -43,7 +43,7 @@ struct PathJob {
     pupil::PupilSliceTables pupil;
     double pupil_z = 0.0;
     double film_z = 0.0;
-    const sampler_detail::DirectionNumbers* directions = nullptr;
+    const sampler_detail::DigitPoints* sobol_points = nullptr;
     Sensor sensor;
     std::uint64_t seed = 0;
     CameraPathRange range;
@@ -52,7 +52,7 @@ struct PathJob {
 
     constexpr void operator()(int item) const {
         const CameraPathRange::Place place = range.place(first + static_cast<std::uint64_t>(item));
-        const auto numbers = PixelSampler(seed, place.pixel).point(range.first_sample + place.sample, *directions);
+        const auto numbers = PixelSampler(seed, place.pixel).point(range.first_sample + place.sample, *sobol_points);
         const auto width = static_cast<std::uint32_t>(sensor.width);
         const std::uint32_t row = place.pixel / width;
         const std::uint32_t column = place.pixel - row * width;
@@ -75,7 +75,7 @@ struct PathJob {
             {static_cast<T>(film.x), static_cast<T>(film.y), static_cast<T>(film_z)},
             {static_cast<T>(aimed.direction.x), static_cast<T>(aimed.direction.y), static_cast<T>(aimed.direction.z)}};
         const auto at = lens.at(wavelength);
-        const auto traced = optics::trace_through<optics::Direction::reverse, optics::Rims::clip, has_specials>(
+        const auto traced = optics::trace_through<optics::Direction::reverse, optics::Rims::clip, makeup>(
             at, ray, [](const optics::SurfaceEvent<T>&) {});
         if (traced.status != optics::RayStatus::ok) {
             paths.fate[item] = PathFate::stopped;
@@ -87,10 +87,12 @@ struct PathJob {
         }
         paths.fate[item] = PathFate::leaves;
         paths.wavelength[item] = wavelength;
-        paths.film_x[item] = film.x;
-        paths.film_y[item] = film.y;
+        if (paths.film_x != nullptr) {
+            paths.film_x[item] = film.x;
+            paths.film_y[item] = film.y;
+            paths.etendue[item] = aimed.etendue;
+        }
         paths.weight[item] = aimed.etendue * static_cast<double>(traced.transmittance);
-        paths.etendue[item] = aimed.etendue;
         paths.x[item] = traced.ray.origin.x;
         paths.y[item] = traced.ray.origin.y;
         paths.z[item] = traced.ray.origin.z;

@@ -37,20 +37,36 @@ Paths on_device(const device::Device& device, const TestCamera& camera, const op
         told->why = why;
     });
     const DeviceCamera<T> there(device, lens, camera.slices);
-    return all_paths(DevicePaths<T>(fills, there, camera.film, camera.pupil.plane_z(),
+    return all_paths(DevicePaths<T>(fills, there, camera.film, camera.pupil.plane_z(), true,
                                     BasicLensPaths<T>(camera.film, lens, camera.slices)),
                      range, capacity);
 }
 
+/// With the expected weights where they differ by the rounding of a few coatings' sines and exponentials, which are a
+/// GPU's own.
 template <class T>
-void compare(const TestCamera& camera, const CameraPathRange& range, const std::string& name) {
+Paths but_for_coatings(Paths found, const Paths& expected) {
+    for (std::size_t i = 0; i < std::min(found.valid.size(), expected.valid.size()); ++i) {
+        const double weight = expected.valid[i].weight;
+        if (std::abs(found.valid[i].weight - weight) <= 100.0 * std::numeric_limits<T>::epsilon() * weight) {
+            found.valid[i].weight = weight;
+        }
+    }
+    return found;
+}
+
+template <class T>
+void compare(const TestCamera& camera, const CameraPathRange& range, const std::string& name, bool is_coated) {
     const optics::SpectralLens<T> lens = in<T>(camera.lens);
     const Paths expected = all_paths(BasicLensPaths<T>(camera.film, lens, camera.slices), range, 4096);
     EXPECT_GT(expected.valid.size(), 100U) << name;
     for (const device::Device& device : every_device()) {
         for (const int capacity : {1, 5, 16, 100, 4096}) {
-            expect_same(on_device(device, camera, lens, range, capacity), expected,
-                        fmt::format("{}, {}, capacity {}", name, device.name(), capacity));
+            Paths found = on_device(device, camera, lens, range, capacity);
+            if (is_coated && device.is_gpu()) {
+                found = but_for_coatings<T>(std::move(found), expected);
+            }
+            expect_same(found, expected, fmt::format("{}, {}, capacity {}", name, device.name(), capacity));
         }
     }
 }
@@ -59,8 +75,28 @@ TEST(DevicePaths, HaveTheBitsOfPacketsInOrder) {
     for (const auto& [name, half_diagonal_mm] :
          {std::pair{"tessar", 70.0}, {"muller-fisheye", 16.0}, {"heliar-tronnier", 25.0}}) {
         const TestCamera camera(name, half_diagonal_mm);
-        compare<double>(camera, kTile, name);
-        compare<float>(camera, kTile, name);
+        const bool is_coated = name == std::string("heliar-tronnier");
+        compare<double>(camera, kTile, name, is_coated);
+        compare<float>(camera, kTile, name, is_coated);
+    }
+}
+
+TEST(DevicePaths, BringNoFilmPointsWhereNobodyAsks) {
+    const TestCamera camera("tessar", 70.0);
+    const Paths expected = all_paths(BasicLensPaths<double>(camera.film, camera.lens, camera.slices), kTile, 4096);
+    for (const device::Device& device : every_device()) {
+        device::SharedDevice fills(device, {}, {});
+        const DeviceCamera<double> there(device, camera.lens, camera.slices);
+        Paths found = all_paths(DevicePaths<double>(fills, there, camera.film, camera.pupil.plane_z(), false,
+                                                    BasicLensPaths<double>(camera.film, camera.lens, camera.slices)),
+                                kTile, 4096);
+        ASSERT_EQ(found.valid.size(), expected.valid.size()) << device.name();
+        for (std::size_t i = 0; i < found.valid.size(); ++i) {
+            EXPECT_EQ(found.valid[i].etendue, 0.0) << "a new buffer's";
+            found.valid[i].film = expected.valid[i].film;
+            found.valid[i].etendue = expected.valid[i].etendue;
+        }
+        expect_same(found, expected, device.name());
     }
 }
 
@@ -89,7 +125,7 @@ TEST(DevicePaths, BeginAnewWithARange) {
     for (const device::Device& device : every_device()) {
         device::SharedDevice fills(device, {}, [](const std::string& why) { FAIL() << why; });
         const DeviceCamera<double> there(device, camera.lens, camera.slices);
-        DevicePaths<double> paths(fills, there, camera.film, camera.pupil.plane_z(),
+        DevicePaths<double> paths(fills, there, camera.film, camera.pupil.plane_z(), true,
                                   LensPaths(camera.film, camera.lens, camera.slices));
         CameraPathBuffer buffer(20);
         paths.start({.first_pixel = 20, .pixels = 8, .samples = 50});
@@ -112,7 +148,7 @@ TEST(DevicePaths, CopiesGoTheirOwnWay) {
     for (const device::Device& device : every_device()) {
         device::SharedDevice fills(device, {}, [](const std::string& why) { FAIL() << why; });
         const DeviceCamera<double> there(device, camera.lens, camera.slices);
-        DevicePaths<double> paths(fills, there, camera.film, camera.pupil.plane_z(),
+        DevicePaths<double> paths(fills, there, camera.film, camera.pupil.plane_z(), true,
                                   LensPaths(camera.film, camera.lens, camera.slices));
         paths.start(kTile);
         expect_same(all_paths(DevicePaths<double>(paths), other, 64), on_processors(other), "a copy");
