@@ -28,11 +28,17 @@ class TilePaths {
                       .samples = samples.end - samples.first,
                       .rows = static_cast<std::uint32_t>(rect.height),
                       .beside_row = width_ - columns});
+        std::uint32_t film_pixel = first_pixel;  // of the path before: most have the same
+        std::size_t tile_pixel = 0;
         while (paths_.fill(buffer_)) {
             for (std::size_t i = 0; i < static_cast<std::size_t>(buffer_.size); ++i) {
-                const std::uint32_t from_first = buffer_.pixel[i] - first_pixel;
-                const std::uint32_t row = from_first / width_;
-                add(buffer_, i, std::size_t{row} * columns + (from_first - row * width_));
+                if (buffer_.pixel[i] != film_pixel) {
+                    film_pixel = buffer_.pixel[i];
+                    const std::uint32_t from_first = film_pixel - first_pixel;
+                    const std::uint32_t row = from_first / width_;
+                    tile_pixel = std::size_t{row} * columns + (from_first - row * width_);
+                }
+                add(buffer_, i, tile_pixel);
             }
         }
         tile.count_rays(static_cast<std::uint64_t>(paths_.started() - started_before));
