@@ -84,7 +84,11 @@ class PathScene {
     }
 
     /// Work as a scene makes it: what the ray sees of a chart.
-    [[nodiscard]] double look_up(const Ray<double>& ray) const { return render::meet_chart(chart_, ray).reflectance; }
+    [[nodiscard]] double look_up(const Ray<double>& ray) const {
+        const render::ChartMeeting at = render::meet_chart(chart_.pose, ray);
+        return render::is_met(at.distance_mm) ? scene::reflectance(chart_.chart, at.x_mm, at.y_mm)
+                                              : chart_.chart.white_reflectance;
+    }
 
   private:
     optics::SpectralLens<double> lens_;

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "engine/render/camera/camera.h"
 #include "engine/render/film/film.h"
@@ -15,8 +16,10 @@ class TilePaths {
 
     /// Calls add(paths, path, pixel) for each path of these samples, `path` being its place in the buffer `paths` and
     /// `pixel` its pixel's in the tile; counts rays in the tile.
-    template <class Add>
-    void for_each(const TileSamples& samples, FilmTile& tile, const Add& add) {
+    ///
+    /// `begin(paths)`: of each buffer before its paths.
+    template <class Begin, class Add>
+    void for_each(const TileSamples& samples, FilmTile& tile, const Begin& begin, const Add& add) {
         const PixelRect& rect = samples.rect;
         const std::int64_t started_before = paths_.started();
         const auto columns = static_cast<std::uint32_t>(rect.width);
@@ -31,6 +34,7 @@ class TilePaths {
         std::uint32_t film_pixel = first_pixel;  // of the path before: most have the same
         std::size_t tile_pixel = 0;
         while (paths_.fill(buffer_)) {
+            begin(std::as_const(buffer_));
             for (std::size_t i = 0; i < static_cast<std::size_t>(buffer_.size); ++i) {
                 if (buffer_.pixel[i] != film_pixel) {
                     film_pixel = buffer_.pixel[i];
@@ -44,9 +48,15 @@ class TilePaths {
         tile.count_rays(static_cast<std::uint64_t>(paths_.started() - started_before));
     }
 
+    template <class Add>
+    void for_each(const TileSamples& samples, FilmTile& tile, const Add& add) {
+        for_each(
+            samples, tile, [](const CameraPathBuffer& /*paths*/) {}, add);
+    }
+
   private:
     CameraPaths paths_;
-    CameraPathBuffer buffer_;
+    CameraPathBuffer buffer_{512};  // few enough for the nearest cache, whoever fills it
     std::uint32_t width_;
 };
 

@@ -21,6 +21,18 @@ double reflectance(const Chart& chart, double x_mm, double y_mm) {
     return is_black(chart, x_mm, y_mm) ? chart.black_reflectance : chart.white_reflectance;
 }
 
+void reflectances(const Chart& chart, std::span<const double> x_mm, std::span<const double> y_mm,
+                  std::span<double> reflectance) {
+    std::visit(
+        [&](const auto& pattern) {
+            for (std::size_t i = 0; i < reflectance.size(); ++i) {
+                reflectance[i] =
+                    is_black(pattern, x_mm[i], y_mm[i]) ? chart.black_reflectance : chart.white_reflectance;
+            }
+        },
+        chart.pattern);
+}
+
 std::vector<Vec2d> feature_points(const Chart& chart) {
     const ChartTraits known = traits(chart);
     return cell_middles(known.points, known.pitch_mm);

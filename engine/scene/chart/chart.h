@@ -1,5 +1,6 @@
 // engine/scene/chart/chart.h — flat test charts, analytic, so that their edges are exact at every scale.
 #pragma once
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,8 +42,10 @@ bool is_black(const Chart& chart, double x_mm, double y_mm);
 ChartTraits traits(const Chart& chart);
 Outline outline(const Chart& chart);
 
-/// Lambertian reflectance at (x, y) mm.
+/// Lambertian reflectance at (x, y) mm; and at many places, a column a coordinate.
 double reflectance(const Chart& chart, double x_mm, double y_mm);
+void reflectances(const Chart& chart, std::span<const double> x_mm, std::span<const double> y_mm,
+                  std::span<double> reflectance);
 
 /// The chart's points, row by row from the top left; mm: inner corners of a checkerboard or a ChArUco board; centres of
 /// discs, squares, dots, crosses or patches; where straight lines cross; the star's centre. None on a flat field.

@@ -69,6 +69,24 @@ TEST(SceneChart, PatternsBlackenTheirShapesAreas) {
 }
 
 // A board's black: its black squares, and of each marker the border and its zeros.
+TEST(SceneChart, ManyPlacesAtOnceAreAsTheyAreByThemselves) {
+    constexpr std::size_t kPlaces = 1000;
+    std::vector<double> x(kPlaces);
+    std::vector<double> y(kPlaces);
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+        x[i] = 0.4 * static_cast<double>(i % 37) * static_cast<double>(i % 29) - 150.0;
+        y[i] = 0.3 * static_cast<double>(i % 41) * static_cast<double>(i % 23) - 110.0;
+    }
+    std::vector<double> found(kPlaces);
+    for (const char* text : kCharts) {
+        const Chart chart = chart_of(text);
+        reflectances(chart, x, y, found);
+        for (std::size_t i = 0; i < kPlaces; ++i) {
+            ASSERT_EQ(found[i], reflectance(chart, x[i], y[i])) << text << ": " << x[i] << ", " << y[i];
+        }
+    }
+}
+
 TEST(SceneChart, ACharucoBoardShowsItsMarkers) {
     const Chart chart = chart_of(kCharts[2]);
     const auto markers = aruco_dictionary("DICT_4X4_50").markers;
