@@ -207,7 +207,10 @@ std::string CsvTable::where_header() const {
 std::optional<std::string_view> CsvTable::next_line() {
     const std::string_view text = table_->text;
     while (position_ < text.size()) {
-        const std::size_t end = std::min(text.find_first_of("\r\n", position_), text.size());
+        // A library's find_first_of would call another function for each letter.
+        const auto end_of_line =
+            std::ranges::find_if(text.substr(position_), [](char letter) { return letter == '\n' || letter == '\r'; });
+        const auto end = static_cast<std::size_t>(end_of_line - text.begin());
         std::string_view line = text.substr(position_, end - position_);
         if (line_ == 0) {
             line = without_byte_order_mark(line);

@@ -12,7 +12,7 @@ const char* simd_name(SimdLevel level) {
 std::vector<SimdLevel> available_simd_levels() {
     std::vector<SimdLevel> levels{SimdLevel::scalar, SimdLevel::baseline};
 #ifdef LENSPROOF_X86_KERNELS
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {  // fma: for LENSPROOF_FUSED
         levels.push_back(SimdLevel::avx2);
     }
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&

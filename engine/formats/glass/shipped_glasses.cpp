@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <map>
+#include <mutex>
+#include <utility>
 
 #include "engine/base/csv.h"
 #include "engine/base/data_root.h"
@@ -39,6 +42,46 @@ optics::GlassCatalogue read_shipped_glasses() {
     return catalogue;
 }
 
+/// The rows of a table of internal transmittances, by glass and catalogue.
+struct TransmittanceTable {
+    std::vector<std::string> columns;
+    std::map<std::pair<std::string, std::string>, CsvRow> rows;
+};
+
+TransmittanceTable read_transmittances(const std::filesystem::path& file) {
+    CsvTable table = CsvTable::read(file);
+    TransmittanceTable found{.columns = table.header(), .rows = {}};
+    while (std::optional<CsvRow> row = table.next()) {
+        found.rows.try_emplace({row->text("glass"), row->text("catalogue")}, *std::move(row));
+    }
+    return found;
+}
+
+/// One that ships, read when it is asked for first; one that there is not is empty.
+const TransmittanceTable& transmittances(const std::filesystem::path& file) {
+    static std::mutex mutex;
+    static std::map<std::filesystem::path, TransmittanceTable> tables;
+    const std::scoped_lock lock(mutex);
+    auto table = tables.find(file);
+    if (table == tables.end()) {
+        table = tables.emplace(file, std::filesystem::exists(file) ? read_transmittances(file) : TransmittanceTable())
+                    .first;
+    }
+    return table->second;
+}
+
+std::vector<optics::TransmittancePoint> points_of(const CsvRow& row, const std::vector<std::string>& columns) {
+    const double thickness_mm = row.number("thickness_mm", kPositive);
+    std::vector<optics::TransmittancePoint> points;
+    for (const std::string& column : columns) {
+        const std::optional<double> wavelength_nm = parse_number(column);
+        if (wavelength_nm && !row.is_empty(column)) {
+            points.push_back({*wavelength_nm, row.number(column, {.min = 0.0, .max = 1.0}), thickness_mm});
+        }
+    }
+    return points;
+}
+
 }  // namespace
 
 const optics::GlassCatalogue& shipped_glasses() {
@@ -70,29 +113,16 @@ std::vector<optics::TransmittancePoint> shipped_transmittance(const optics::Glas
     if (!glass.internal_transmittance.empty()) {
         return glass.internal_transmittance;
     }
-    std::vector<optics::TransmittancePoint> points;
     for (const char* name : kTables) {
-        const std::filesystem::path file = transmittance_file(name);
         const std::string maker = std::string(name).substr(0, std::string_view(name).find('-'));
-        if (!optics::same_letters(maker, glass.catalogue) || !std::filesystem::exists(file)) {
-            continue;
-        }
-        CsvTable table = CsvTable::read(file);
-        while (const std::optional<CsvRow> row = table.next()) {
-            if (row->text("glass") != glass.name || row->text("catalogue") != glass.catalogue) {
-                continue;
+        if (optics::same_letters(maker, glass.catalogue)) {
+            const TransmittanceTable& table = transmittances(transmittance_file(name));
+            if (const auto found = table.rows.find({glass.name, glass.catalogue}); found != table.rows.end()) {
+                return points_of(found->second, table.columns);
             }
-            const double thickness_mm = row->number("thickness_mm", kPositive);
-            for (const std::string& column : table.header()) {
-                const std::optional<double> wavelength_nm = parse_number(column);
-                if (wavelength_nm && !row->is_empty(column)) {
-                    points.push_back({*wavelength_nm, row->number(column, {.min = 0.0, .max = 1.0}), thickness_mm});
-                }
-            }
-            return points;
         }
     }
-    return points;
+    return {};
 }
 
 }  // namespace lensproof::formats

@@ -86,9 +86,11 @@ optics::Lens load_lens(const std::string& lens, const LensSettings& settings) {
         with_coatings(with_stop_picture(read_prescription(find_lens_file(lens))), settings.coatings);
     const std::size_t position = settings.zoom.empty() ? 0 : optics::find_zoom_position(prescription, settings.zoom);
     prescription = optics::at_zoom_position(std::move(prescription), position);
-    const optics::GlassCatalogue glasses =
-        with_own_catalogues(settings.glasses ? *settings.glasses : shipped_glasses(), prescription);
-    return with_transmittance(optics::make_lens(prescription, glasses, settings.indices));
+    const optics::GlassCatalogue& glasses = settings.glasses ? *settings.glasses : shipped_glasses();
+    const bool has_own = !prescription.catalogues.empty() || !prescription.enclosed_glasses.empty();
+    return with_transmittance(
+        has_own ? optics::make_lens(prescription, with_own_catalogues(glasses, prescription), settings.indices)
+                : optics::make_lens(prescription, glasses, settings.indices));  // thousands are not copied
 }
 
 }  // namespace lensproof::formats
