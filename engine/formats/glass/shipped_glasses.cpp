@@ -52,7 +52,8 @@ TransmittanceTable read_transmittances(const std::filesystem::path& file) {
     CsvTable table = CsvTable::read(file);
     TransmittanceTable found{.columns = table.header(), .rows = {}};
     while (std::optional<CsvRow> row = table.next()) {
-        found.rows.try_emplace({row->text("glass"), row->text("catalogue")}, *std::move(row));
+        std::pair glass(row->text("glass"), row->text("catalogue"));
+        found.rows.emplace(std::move(glass), *std::move(row));
     }
     return found;
 }

@@ -92,12 +92,12 @@ void SparePathPieces::give_back(std::unique_ptr<DevicePathPiece> piece) {
 template <class T>
 DevicePaths<T>::DevicePaths(device::SharedDevice& device, const DeviceCamera<T>& camera, const FilmSampling& film,
                             double pupil_z, bool has_film, BasicLensPaths<T> fallback)
-    : device_(&device),
+    : fallback_(std::move(fallback)),
+      device_(&device),
       camera_(&camera),
       film_(film),
       pupil_z_(pupil_z),
-      has_film_(has_film),
-      fallback_(std::move(fallback)) {}
+      has_film_(has_film) {}
 
 template <class T>
 DevicePaths<T>::~DevicePaths() {

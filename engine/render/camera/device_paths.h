@@ -93,12 +93,11 @@ class DevicePaths {
     /// Until the buffer is full or the range ends; throws device::Error.
     void fill_from_device(CameraPathBuffer& buffer);
 
+    BasicLensPaths<T> fallback_;
     device::SharedDevice* device_;
     const DeviceCamera<T>* camera_;
     FilmSampling film_;
     double pupil_z_;
-    bool has_film_;
-    BasicLensPaths<T> fallback_;
     std::array<std::unique_ptr<Piece>, 2> pieces_;  // none before the first range, and once the device has failed
     std::size_t current_ = 0;                       // that paths are given out of
     std::vector<std::uint32_t> leaving_;            // those that are being given, by their place in the piece
@@ -106,6 +105,7 @@ class DevicePaths {
     std::uint64_t started_pieces_ = 0;  // up to which sample of the range
     std::uint64_t given_ = 0;           // likewise
     std::int64_t started_ = 0;
+    bool has_film_;
 };
 
 extern template class DeviceCamera<float>;
