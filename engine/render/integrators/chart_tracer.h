@@ -61,13 +61,13 @@ class ChartMeetings {
 /// along the camera's axis, reflectance as albedo, and the chart's normal towards the camera, in the camera's frame.
 class ChartTracer {
   public:
-    explicit ChartTracer(const View& view) : view_(view), paths_(*view.camera, view.seed, PathCarry::hero) {}
+    explicit ChartTracer(const View& view) : paths_(*view.camera, view.seed, PathCarry::hero), view_(view) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile);
 
   private:
-    View view_;
     TilePaths paths_;
+    View view_;
     ChartMeetings meetings_;
 };
 
