@@ -56,7 +56,7 @@ class TilePaths {
 
   private:
     CameraPaths paths_;
-    CameraPathBuffer buffer_{512};  // few enough for the nearest cache, whoever fills it
+    CameraPathBuffer buffer_{512};  // few enough for a core's own caches
     std::uint32_t width_;
 };
 

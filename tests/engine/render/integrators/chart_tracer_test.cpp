@@ -39,7 +39,8 @@ TEST(ChartMeetings, AreWhereRaysWereAimed) {
             EXPECT_EQ(found.reflectance(i), chart.chart.white_reflectance) << "the world's";
             continue;
         }
-        // 600 mm of way, whose direction is known to some ulps.
+        // Coordinates of up to 600 mm through two turns of three products each, a direction's norm and a quotient:
+        // sixteen roundings at most.
         EXPECT_NEAR(at.x, aims[i].x, 600.0 * 16.0 * 0x1p-53) << i;
         EXPECT_NEAR(at.y, aims[i].y, 600.0 * 16.0 * 0x1p-53) << i;
         EXPECT_EQ(found.reflectance(i), scene::reflectance(chart.chart, at.x, at.y)) << i;

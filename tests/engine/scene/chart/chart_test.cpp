@@ -68,7 +68,6 @@ TEST(SceneChart, PatternsBlackenTheirShapesAreas) {
     }
 }
 
-// A board's black: its black squares, and of each marker the border and its zeros.
 TEST(SceneChart, ManyPlacesAtOnceAreAsTheyAreByThemselves) {
     constexpr std::size_t kPlaces = 1000;
     std::vector<double> x(kPlaces);
@@ -87,6 +86,7 @@ TEST(SceneChart, ManyPlacesAtOnceAreAsTheyAreByThemselves) {
     }
 }
 
+// A board's black: its black squares, and of each marker the border and its zeros.
 TEST(SceneChart, ACharucoBoardShowsItsMarkers) {
     const Chart chart = chart_of(kCharts[2]);
     const auto markers = aruco_dictionary("DICT_4X4_50").markers;
