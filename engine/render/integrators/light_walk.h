@@ -19,6 +19,8 @@ enum class LightPathsKept {
     /// (`sky_by_camera`); and those of point lights whose first scattering is by a mirror or smooth glass, which no
     /// camera path makes.
     beside_camera_paths,
+    /// Those that come to the camera straight from a sun.
+    of_suns,
 };
 
 /// One light path: from each of its points it joins the camera, whose film it reaches as `entrance` draws.
@@ -43,8 +45,13 @@ class LightWalk {
     /// Returns how many rays were traced, in the scene and into the camera.
     std::uint32_t walk() {
         const auto begin = numbers_.next();
+        if (kept_ == LightPathsKept::of_suns) {
+            join_from_light(scene_.lights.start_at_sun(path_, begin[0], begin[1], begin[2]));
+            return rays_;
+        }
         const scene::LightStart start = scene_.lights.start(path_, begin[0], begin[1], begin[2]);
-        if (settings_.min_bounces == 0 && (Entrance::shows_points || !start.is_point())) {
+        if (settings_.min_bounces == 0 && (Entrance::shows_points || !start.is_point()) &&
+            !(start.is_sun && settings_.leaves_suns_out)) {
             join_from_light(start);
         }
         if (settings_.max_bounces > 0 && (kept_ == LightPathsKept::all || start.is_point())) {
@@ -134,7 +141,8 @@ class LightWalk {
         const LightOrigin from{start.is_at_infinity ? start.direction : start.point, start.is_at_infinity};
         join(from, [&](const Entry& in) {
             if (start.is_at_infinity) {
-                const double kept = kept_ == LightPathsKept::all ? 1.0 : 1.0 - sky_by_camera(start.pdf);
+                const bool is_shared = kept_ == LightPathsKept::beside_camera_paths;
+                const double kept = is_shared ? 1.0 - sky_by_camera(start.pdf) : 1.0;
                 return Carried{.light = is_blocked(in.end - scene_.lights.beyond_mm(in.end) * start.direction, in.end)
                                             ? spectral::SpectralSample()
                                             : scene::scaled(start.value, kept),

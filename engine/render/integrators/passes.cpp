@@ -9,6 +9,7 @@
 #include "engine/render/integrators/stray_paths.h"
 #include "engine/render/stray/diffracted_entrance.h"
 #include "engine/render/stray/ghost_entrance.h"
+#include "engine/render/stray/wave_entrance.h"
 
 namespace lensproof::render {
 
@@ -35,8 +36,8 @@ Render with_splats(const View& view, TileRenderer renderer) {
 
 /// By light paths from all that shines on the camera.
 template <class Entrance>
-Render astray(const View& view, Entrance entrance, std::uint64_t salt) {
-    Render render = with_splats(view, LightPaths(view, std::move(entrance), salt));
+Render astray(const View& view, Entrance entrance, std::uint64_t salt, LightPathsKept kept = LightPathsKept::all) {
+    Render render = with_splats(view, LightPaths(view, std::move(entrance), salt, kept));
     render.lands_anywhere = true;
     return render;
 }
@@ -61,6 +62,15 @@ Render diffracted(const View& view, const Integrator& /*integrator*/) {
     return astray(view, DiffractedEntrance(*view.camera, view.diffraction), 0x510e527fade682d1ULL);
 }
 
+Render waves(const View& view, const Integrator& /*integrator*/) {
+    const std::vector<scene::SunLight> suns = view.scene().lights.suns();
+    if (suns.empty()) {
+        throw InputError("the pass \"waves\" images suns, and the scene has none");
+    }
+    return astray(view, WaveEntrance(*view.camera, suns, view.diffraction), 0x9159015a3070dd17ULL,
+                  LightPathsKept::of_suns);
+}
+
 Render everything(const View& view, const Integrator& /*integrator*/) {
     return astray(view, WalkEntrance(*view.camera, Ways::all), 0xa54ff53a5f1d36f1ULL);
 }
@@ -75,7 +85,10 @@ const std::vector<Pass>& passes() {
         {"faint-ghosts", "light that is reflected four times and more", faint_ghosts},
         {"barrel", "light that the inside of the lens scatters", barrel},
         {"diffracted", "light that the edges of the stop turn aside: halos and streaks", diffracted},
-        {"everything", "all of these but the last at once, by chance: slow, and a judge of them", everything},
+        {"waves",
+         "suns, imaged and diffracted by waves: in the place of what \"direct\" and \"diffracted\" have of them",
+         waves},
+        {"everything", "all of these but the last two at once, by chance: slow, and a judge of them", everything},
     };
     return all;
 }
@@ -103,10 +116,13 @@ std::vector<Render> renders_of(const std::vector<std::string>& names, const View
     View stray = view;
     stray.camera = view.stray_camera != nullptr ? view.stray_camera : view.camera;
     const double straight = is_diffracted ? DiffractedEntrance(*stray.camera, view.diffraction).geometric_share() : 1.0;
+    const bool has_waves = std::ranges::find(names, "waves") != names.end();
     std::vector<Render> renders;
     for (const std::string& name : names) {
         const Pass& pass = pass_named(name);
-        renders.push_back(pass.render(pass.goes_straight ? view : stray, integrators.of(name)));
+        View seen = pass.goes_straight ? view : stray;
+        seen.paths.leaves_suns_out = has_waves && (pass.goes_straight || name == "diffracted");
+        renders.push_back(pass.render(seen, integrators.of(name)));
         renders.back().film.light_share = pass.goes_straight ? straight : 1.0;
     }
     double bytes = 0.0;

@@ -17,6 +17,8 @@ namespace lensproof::render {
 ///   faint-ghosts  reflected four times and more
 ///   barrel        scattered by a wall inside the lens, once or more
 ///   diffracted    turned aside by the edges of the stop; what images is less by that, where both are rendered
+///   waves         straight from a sun, imaged and diffracted: in the place of what `direct` and `diffracted` have of
+///   it
 ///
 /// And one that is none of them but what the first five add up to:
 ///

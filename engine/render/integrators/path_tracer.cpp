@@ -61,6 +61,9 @@ class PathWalk {
             scene_->lights.visit_infinity(
                 ray_.direction, start_->path,
                 [&](scene::Lights::Emission light) {
+                    if (light.is_sun && bounce_ == 0 && settings_->leaves_suns_out) {
+                        return;
+                    }
                     light.radiance = scene::scaled(light.radiance, counts() ? 1.0 : sky_by_camera(light.start_pdf));
                     add_found(light, 1.0);
                 },

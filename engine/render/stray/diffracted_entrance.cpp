@@ -9,12 +9,6 @@
 
 namespace lensproof::render {
 
-namespace {
-
-constexpr double kMmPerNm = 1e-6;
-
-}  // namespace
-
 DiffractedEntrance::DiffractedEntrance(const Camera& camera, const DiffractionSettings& settings)
     : front_(camera), zone_width_(settings.zone_width) {
     const optics::Lens& lens = *camera.lens();

@@ -86,7 +86,10 @@ Lights::Lights(const SceneGeometry& scene, std::vector<LightSource> lights) : of
                                   std::tie(entry.middle, entry.extent2_mm2) = middle_of(entry.surface->sampler());
                               },
                               [&](const LightAtPoint auto& point) { entry.middle = point.position; },
-                              [&](const SunLight& sun) { entry.direction = sun.towards; },
+                              [&](const SunLight& sun) {
+                                  suns_.push_back(index);
+                                  entry.direction = sun.towards;
+                              },
                               [](const LightAtInfinity auto& /*all about*/) {}},
                    entry.light);
         const double per = entry.middle ? 4.0 * kPi * kSquareMetresPerSquareMm : cross_section;
@@ -207,14 +210,49 @@ Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
                               [](const auto& /*nearer*/) { return SkySample(); }},
                    entry.light);
     const double pdf = entry.probability * seen.pdf;
-    return {.radiance = seen.radiance, .pdf = pdf, .start_pdf = pdf, .leaving_pdf = pdf * crossing_pdf_};
+    return {.radiance = seen.radiance,
+            .pdf = pdf,
+            .start_pdf = pdf,
+            .leaving_pdf = pdf * crossing_pdf_,
+            .is_sun = std::holds_alternative<SunLight>(entry.light)};
 }
 
 LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, double u1, double u2) const {
-    const auto [chosen, probability, rest] = choose(u_light);
+    return start_at(choose(u_light), path, u1, u2);
+}
+
+LightStart Lights::start_at_sun(const spectral::PathWavelengths& path, double u_light, double u1, double u2) const {
+    double all = 0.0;
+    for (const std::uint32_t sun : suns_) {
+        all += lights_[sun].probability;
+    }
+    const Entry* chosen = &lights_[suns_.back()];
+    double before = 0.0;
+    for (const std::uint32_t sun : suns_) {
+        before += lights_[sun].probability;
+        if (u_light * all < before) {
+            chosen = &lights_[sun];
+            break;
+        }
+    }
+    // Suns without power in the grid's band are drawn alike where there are no others.
+    const double probability = all > 0.0 ? chosen->probability / all : 1.0;
+    return start_at({.entry = chosen, .probability = probability}, path, u1, u2);
+}
+
+std::vector<SunLight> Lights::suns() const {
+    std::vector<SunLight> suns;
+    for (const std::uint32_t sun : suns_) {
+        suns.push_back(std::get<SunLight>(lights_[sun].light));
+    }
+    return suns;
+}
+
+LightStart Lights::start_at(const Chosen& chosen, const spectral::PathWavelengths& path, double u1, double u2) const {
+    const auto& [entry, probability, rest] = chosen;
     LightStart start;
-    start.light = static_cast<std::uint32_t>(chosen - lights_.data());
-    std::visit(Overloaded{[&, &surface = chosen->surface, &of_side = rest](const AreaLight& area) {
+    start.light = static_cast<std::uint32_t>(entry - lights_.data());
+    std::visit(Overloaded{[&, &surface = entry->surface, &of_side = rest](const AreaLight& area) {
                               const SurfaceSample drawn = surface->sampler().sample(u1, u2);
                               const bool is_back = area.is_two_sided && of_side >= 0.5;
                               start.point = drawn.point;
@@ -231,12 +269,13 @@ LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, 
                           [&](const LightAtInfinity auto& sky) {
                               const SkySample drawn = sky.draw(path, u1, u2);
                               start.is_at_infinity = true;
+                              start.is_sun = std::is_same_v<std::decay_t<decltype(sky)>, SunLight>;
                               start.direction = -1.0 * drawn.direction;
                               start.value = scaled(light_of(drawn.radiance, drawn.place, path),
                                                    drawn.pdf > 0.0 ? 1.0 / drawn.pdf : 0.0);
                               start.pdf = drawn.pdf;
                           }},
-               chosen->light);
+               entry->light);
     start.value = scaled(start.value, 1.0 / probability);
     start.pdf *= probability;
     return start;

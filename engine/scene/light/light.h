@@ -81,6 +81,7 @@ class Lights {
         double pdf = 0.0;          // per solid angle, with the light drawn by power
         double start_pdf = 0.0;    // with which `start` draws this point or direction (LightStart)
         double leaving_pdf = 0.0;  // per etendue, 1/(mm² sr): of `start` and `leave` together
+        bool is_sun = false;
     };
     [[nodiscard]] Emission emitted(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction,
                                    const spectral::PathWavelengths& path) const;
@@ -107,6 +108,11 @@ class Lights {
 
     /// Draws where a light path begins. There has to be a light.
     [[nodiscard]] LightStart start(const spectral::PathWavelengths& path, double u_light, double u1, double u2) const;
+
+    /// The same at one of its suns, of which there has to be one, each as often as its fraction of their power.
+    [[nodiscard]] LightStart start_at_sun(const spectral::PathWavelengths& path, double u_light, double u1,
+                                          double u2) const;
+    [[nodiscard]] std::vector<SunLight> suns() const;
 
     /// What a start that is not at infinity sends in a direction: W·sr⁻¹·nm⁻¹.
     [[nodiscard]] spectral::SpectralSample intensity(const LightStart& start, const Vec3d& direction) const;
@@ -150,6 +156,8 @@ class Lights {
         double rest = 0.0;  // of the number that chose it, uniform again
     };
     [[nodiscard]] Chosen choose(double u) const;
+    [[nodiscard]] LightStart start_at(const Chosen& chosen, const spectral::PathWavelengths& path, double u1,
+                                      double u2) const;
     /// Nine times out of ten by these weights of lights that have a direction, else by power: none is left out for
     /// being judged by its middle alone. Lights all about are drawn by power.
     [[nodiscard]] Chosen choose(double u, std::span<const double> weights) const;
@@ -163,6 +171,7 @@ class Lights {
     std::vector<double> cumulative_;          // of the probabilities
     std::vector<std::int32_t> of_object_;     // the area light of each object, or −1
     std::vector<std::uint32_t> at_infinity_;  // indices
+    std::vector<std::uint32_t> suns_;         // indices
     const Environment* map_ = nullptr;        // of the first light among these that is one
     Vec3d centre_;                            // of a sphere around the scene
     double radius_mm_ = 0.0;

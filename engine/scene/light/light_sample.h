@@ -37,6 +37,7 @@ struct LightSample {
 struct LightStart {
     std::uint32_t light = 0;
     bool is_at_infinity = false;
+    bool is_sun = false;
     Vec3d point;
     Vec3d direction;        // of light from infinity, unit length
     Vec3d normal;           // of a surface, on the side that shines here; else zeros

@@ -41,7 +41,7 @@ Measured returned_light(const MixBsdf& bsdf, const Vec3d& wo, Uniform& uniform) 
         const auto drawn = sample(bsdf, wo, uniform(), uniform(), uniform(), Transport::importance);
         return drawn ? drawn->weight[1] : 0.0;
     });
-    return mean_of(weights);
+    return lensproof::mean_of(weights);
 }
 
 // In a white furnace what is white returns all light, of whatever it is made: metal and plastic of even roughness to
