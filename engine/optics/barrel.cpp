@@ -39,7 +39,7 @@ bool is_glass(const Glass& medium) {
 
 }  // namespace
 
-Barrel::Barrel(const Lens& lens) : finish_(lens.barrel) {
+Barrel::Barrel(const Lens& lens) : finish_(lens.barrel), dust_(lens.dust) {
     const bool is_known = lens.is_rotationally_symmetric && !lens.has_mirrors() && !lens.has_thin_elements() &&
                           !is_glass(lens.object_medium);
     if (!is_known && finish_.is_black()) {

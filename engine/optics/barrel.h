@@ -1,5 +1,5 @@
-// engine/optics/barrel.h — the walls inside a lens: tubes between elements, edges of elements, mounts and the stop's
-// blades.
+// engine/optics/barrel.h — what scatters in a lens: the walls inside, which are tubes between elements, edges of
+// elements, mounts and the stop's blades; and the dust on its front.
 #pragma once
 #include <optional>
 #include <vector>
@@ -30,6 +30,10 @@ class Barrel {
     [[nodiscard]] std::optional<WallMeeting> meet(int cell, const Ray<double>& ray) const;
 
     [[nodiscard]] const BarrelFinish& finish() const { return finish_; }
+    /// What lies on the first surface, or null.
+    [[nodiscard]] const FrontDust* dust() const { return dust_ ? &*dust_ : nullptr; }
+    /// Whether light that meets any of it ends there.
+    [[nodiscard]] bool is_black() const { return finish_.is_black() && !(dust_ && dust_->albedo > 0.0); }
 
   private:
     struct Ring {
@@ -47,6 +51,7 @@ class Barrel {
     };
 
     BarrelFinish finish_;
+    std::optional<FrontDust> dust_;
     std::vector<Cell> cells_;  // behind surface 0, 1, …
 };
 

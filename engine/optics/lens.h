@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/infinity.h"
+#include "engine/optics/front_dust.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/optics/prescription.h"
 #include "engine/optics/thin_film.h"
@@ -57,6 +58,7 @@ struct Lens {
     std::vector<LensSurface> surfaces;
     StopMask stop_mask;
     BarrelFinish barrel;
+    std::optional<FrontDust> dust;
     std::vector<FocusGroup> focus_groups;
     Surroundings surroundings = Surroundings::air;
     double reference_wavelength_nm = spectral::kLineD;

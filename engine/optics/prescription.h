@@ -202,17 +202,31 @@ struct PolygonStop {
     double rotation_deg = 0.0;  // of a corner from +x towards +y
 };
 
-/// Transmittances over the square around a stop's circle, 0 to 1; rows from +y downwards, each from −x.
-struct StopTexture {
+/// Where a point of the square around a circle, which is the unit circle, lies in a texture of it, row by row.
+constexpr std::size_t texture_place(double x, double y, int columns, int rows) {
+    const auto cell = [](double position, int size) {
+        const int at = static_cast<int>(0.5 * (position + 1.0) * size);
+        return at < 0 ? 0 : (at < size ? at : size - 1);
+    };
+    return static_cast<std::size_t>(cell(-y, rows)) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(cell(x, columns));
+}
+
+/// A picture's linear brightness over the square around an aperture's circle, 0 to 1; rows from +y downwards, each from
+/// −x.
+struct ApertureTexture {
     int size_x = 0;
     int size_y = 0;
     std::vector<float> values;
+
+    /// At a point inside the circle, in units of its semi-diameter.
+    [[nodiscard]] double at(double x, double y) const { return values[texture_place(x, y, size_x, size_y)]; }
 };
 
 /// A stop with a picture's linear brightness as its transmittance.
 struct TexturedStop {
-    std::string image;                           // relative to the prescription's file
-    std::shared_ptr<const StopTexture> texture;  // what it shows, once it is read (with_stop_picture)
+    std::string image;                               // relative to the prescription's file
+    std::shared_ptr<const ApertureTexture> texture;  // what it shows, once it is read (with_stop_picture)
 };
 
 using StopShape = std::variant<std::monostate, PolygonStop, TexturedStop>;  // monostate: the full circle

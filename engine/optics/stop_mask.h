@@ -43,16 +43,7 @@ struct StopOpening {
                 return 0.0;
             }
         }
-        if (texture.empty()) {
-            return 1.0;
-        }
-        const auto cell = [](double position, int size) {
-            const int at = static_cast<int>(0.5 * (position + 1.0) * size);
-            return at < 0 ? 0 : (at < size ? at : size - 1);
-        };
-        const auto row = static_cast<std::size_t>(cell(-y, texture_rows));
-        return texture[row * static_cast<std::size_t>(texture_columns) +
-                       static_cast<std::size_t>(cell(x, texture_columns))];
+        return texture.empty() ? 1.0 : texture[texture_place(x, y, texture_columns, texture_rows)];
     }
 
     /// How far a point stands inside (≤ 0) or outside (> 0) the blade's edge that is nearest to being crossed, and
@@ -136,7 +127,7 @@ class StopMask {
     [[nodiscard]] double half_chord() const;  // of each edge
 
     std::vector<Edge> edges_;
-    std::shared_ptr<const StopTexture> texture_;
+    std::shared_ptr<const ApertureTexture> texture_;
 };
 
 }  // namespace lensproof::optics

@@ -19,7 +19,9 @@ struct StrayLight {
     double weight = 1.0;
     double at_first_wall = 0.0;  // what that wall took of it; later ones take all or nothing
     int reflections = 0;
-    int walls = 0;
+    int walls = 0;  // dust counts as one
+    /// Where dust on the front is the outermost thing that scatters it: the first surface's normal there, outwards.
+    std::optional<Vec3d> dust_normal{};
 };
 
 enum class StrayEnd {
@@ -46,6 +48,9 @@ struct NoWitness {
 /// `forward`: from the scene to the first surface, else from the sensor to the last; both ways carry the same light, as
 /// surfaces and walls are reciprocal. A ray from one surface to its neighbour's clear aperture passes, whatever wall
 /// the table's rims put in between: what `trace` sees as open is open.
+///
+/// Dust on the front (FrontDust) is met from outside before the first surface, by chance, and from inside behind it;
+/// between a grain and the glass under it light goes back and forth until either lets it go.
 ///
 /// Numbers: `double numbers()`, from (0, 1). `landed(const StrayLight&)` is called at each arrival on the sensor's
 /// plane, the ray's origin on it; a sensor and a stop's blades that are mirrors send light back, by chance
@@ -82,7 +87,8 @@ class StrayWalk {
     template <class Landed>
     StrayEnd leave_first_wall(StrayLight& light, Landed&& landed) {
         stops_at_wall_ = false;
-        const std::optional<StrayEnd> end = leave_wall(light, wall_normal_, wall_finish_);
+        const std::optional<StrayEnd> end = is_wall_dust_ ? leave_dust(light, wall_normal_, is_under_dust_)
+                                                          : leave_wall(light, wall_normal_, wall_finish_);
         return end ? *end : go_on(light, landed);
     }
 
@@ -210,25 +216,80 @@ class StrayWalk {
     }
 
     std::optional<StrayEnd> leave_wall(StrayLight& light, const Vec3d& normal, const WallFinish& finish) {
-        if (!(finish.albedo > 0.0) || (light.walls > 0 && numbers_() >= finish.albedo)) {
-            return StrayEnd::absorbed;
-        }
-        if (stops_at_wall_) {
+        if (stops_at_wall_ && finish.albedo > 0.0) {
             wall_normal_ = normal;
             wall_finish_ = finish;
             return StrayEnd::wall;
         }
-        if (light.walls == 0) {
-            light.at_first_wall = light.weight * (1.0 - finish.albedo);
-            light.weight *= finish.albedo;
+        if (!scatters(light, finish.albedo)) {
+            return StrayEnd::absorbed;
         }
-        ++light.walls;
         const Basis frame(normal);
         light.ray.direction =
             normalized(frame.to_world(scattered_direction(finish, frame.to_local(light.ray.direction), numbers_)));
         witness_.at_wall(light.ray.direction);
         target_ = kAnySurface;
         return std::nullopt;
+    }
+
+    bool scatters(StrayLight& light, double albedo) {
+        if (!(albedo > 0.0) || (light.walls > 0 && numbers_() >= albedo)) {
+            return false;
+        }
+        if (light.walls == 0) {
+            light.at_first_wall = light.weight * (1.0 - albedo);
+            light.weight *= albedo;
+        }
+        ++light.walls;
+        return true;
+    }
+
+    /// Whether a grain lies on the first surface at a point.
+    bool meets_dust(const Vec3d& front) {
+        const FrontDust* dust = barrel_.dust();
+        return dust != nullptr && numbers_() >= dust->clear(front);
+    }
+
+    /// From a grain, which the light met from outside or `is_under` it; `outwards`: the first surface's normal.
+    std::optional<StrayEnd> leave_dust(StrayLight& light, const Vec3d& outwards, bool is_under) {
+        const FrontDust& dust = *barrel_.dust();
+        if (stops_at_wall_ && dust.albedo > 0.0) {
+            wall_normal_ = outwards;
+            is_wall_dust_ = true;
+            is_under_dust_ = is_under;
+            return StrayEnd::wall;
+        }
+        while (scatters(light, dust.albedo)) {
+            const bool goes_out = is_under == (numbers_() < dust.through);
+            const double u = numbers_();
+            light.ray.direction =
+                Basis(goes_out ? outwards : -1.0 * outwards).to_world(lambert_direction(u, numbers_()));
+            witness_.at_wall(light.ray.direction);
+            if (goes_out) {
+                light.dust_normal = outwards;
+                cell_ = 0;
+                target_ = -1;
+                return std::nullopt;
+            }
+            TravellingRay<double> passed{.origin = light.ray.origin, .direction = light.ray.direction};
+            TravellingRay<double> reflected = passed;
+            run_to_surface<Rims::follow>(lens_, 0, true, AtSurface::pass, mirrors_, passed);
+            run_to_surface<Rims::follow>(lens_, 0, true, AtSurface::reflect, mirrors_, reflected);
+            const bool is_through = passed.status == RayStatus::ok;
+            const double passing = is_through ? passed.at_surfaces : 0.0;
+            const double going_on = passing + reflected.at_surfaces;
+            light.weight *= going_on;
+            if (numbers_() * going_on < passing) {
+                witness_.at_surface(AtSurface::pass, 0, true, passed.global());
+                light.ray = passed.global();
+                cell_ = 1;
+                target_ = 1;
+                return std::nullopt;
+            }
+            witness_.at_surface(AtSurface::reflect, 0, true, reflected.global());
+            is_under = true;
+        }
+        return StrayEnd::absorbed;
     }
 
     std::optional<StrayEnd> leave_surface(StrayLight& light, const GlassMeeting& at) {
@@ -249,6 +310,13 @@ class StrayWalk {
             run_to_surface<Rims::clip>(lens_, at.surface, at.forward, AtSurface::reflect, mirrors_, reflected);
             reflecting = reflected.at_surfaces / at.open;
         }
+        const bool is_dusty = at.surface == 0 && barrel_.dust() != nullptr;
+        const Vec3d along = is_dusty ? normalized(light.ray.direction - reflected.direction) : Vec3d{};  // the normal
+        if (is_dusty && at.forward && meets_dust(at.passed.global().origin)) {
+            light.ray.origin = at.passed.global().origin;
+            light.dust_normal = -1.0 * along;
+            return leave_dust(light, -1.0 * along, false);
+        }
         const double going_on = passing + reflecting;
         if (!(going_on > 0.0)) {
             return StrayEnd::absorbed;
@@ -258,6 +326,9 @@ class StrayWalk {
         light.ray = is_back ? reflected.global() : at.passed.global();
         light.reflections += is_back ? 1 : 0;
         witness_.at_surface(is_back ? AtSurface::reflect : AtSurface::pass, at.surface, at.forward, light.ray);
+        if (is_dusty && !at.forward && !is_back && meets_dust(light.ray.origin)) {
+            return leave_dust(light, along, true);
+        }
         const bool runs_forward = at.forward != is_back;
         cell_ = runs_forward ? at.surface + 1 : at.surface;
         target_ = runs_forward ? at.surface + 1 : at.surface - 1;
@@ -275,6 +346,8 @@ class StrayWalk {
     bool stops_at_wall_ = false;
     Vec3d wall_normal_;  // where it has stopped
     WallFinish wall_finish_;
+    bool is_wall_dust_ = false;
+    bool is_under_dust_ = false;
 };
 
 }  // namespace lensproof::optics

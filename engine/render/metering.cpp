@@ -24,6 +24,7 @@ SceneSetup pilot_of(const SceneSetup& setup) {
     camera.model = LensModel::thin_lens;
     camera.blades.reset();
     camera.barrel.reset();
+    camera.dust.reset();
     camera.exposure.time_s = 1.0;
     camera.is_exposure_automatic = false;
     const double coarser = std::max({1.0, camera.sensor.width / kMostSide, camera.sensor.height / kMostSide});

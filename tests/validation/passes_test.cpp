@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "engine/formats/image/image.h"
+#include "tests/test_folder.h"
 #include "tests/validation/studio.h"
 
 namespace lensproof::passes_test {
@@ -71,6 +73,61 @@ TEST(Passes, OfWallsFromBothEndsAreWhatLightPathsBring) {
                          .barrel = optics::BarrelFinish{.tube = grey, .edges = grey, .blades = grey}},
                         parts);
     expect_same_image(studio.by_pass("barrel", 12000), studio.by_light_paths(render::Ways::walls, 24000), 0.12);
+}
+
+/// A third of the front under grains and haze.
+render::DustSettings dust_in(const TestFolder& folder) {
+    formats::Image picture = formats::make_image(3, 2, {"Y"});
+    picture.pixels = {1.0F, 0.0F, 0.25F, 0.0F, 0.75F, 0.0F};
+    formats::write_exr(picture, folder.path() / "dust.exr");
+    return {.picture = folder.path() / "dust.exr", .albedo = 0.8, .through = 0.6};
+}
+
+/// A lit wall under a lamp, a sun and a sky; and, with a mirror that shows it, a point light.
+SceneParts lit_from_everywhere(bool has_point) {
+    SceneParts parts(kGrid);
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}}, 0.7);
+    const std::uint32_t lamp =
+        parts.add(scene::Quad{300.0, 300.0}, {.linear = about_x(135.0), .translation = {0.0, 200.0, 1800.0}}, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(20.0, kGrid)});
+    if (has_point) {
+        parts.add(scene::Quad{2000.0, 2000.0}, {.linear = kIdentity3, .translation = {0.0, 0.0, -100.0}},
+                  scene::Material{scene::ConductorMaterial{.n = spectral::constant_spectrum(0.1, kGrid),
+                                                           .k = spectral::constant_spectrum(4.0, kGrid),
+                                                           .roughness = {}}});
+        parts.lights.emplace_back(
+            scene::PointLight{.position = {0.0, 300.0, -50.0}, .intensity = spectral::constant_spectrum(0.1, kGrid)});
+    }
+    parts.lights.emplace_back(
+        scene::SunLight{normalized(Vec3d{-0.9, 0.22, 0.3}), std::cos(0.005), spectral::constant_spectrum(1e4, kGrid)});
+    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(0.2, kGrid)});
+    return parts;
+}
+
+// Dust is lit by all lights of a scene, straight and by way of walls and mirrors.
+TEST(Passes, OfDustFromBothEndsAreWhatLightPathsBring) {
+    const TestFolder folder;
+    const Studio studio({.lens = "tessar", .f_number = 4.0, .sensor = kSensor, .grid = kGrid, .dust = dust_in(folder)},
+                        lit_from_everywhere(true));
+    const render::Film barrel = studio.by_pass("barrel", 2000);
+    const render::Film judge = studio.by_light_paths(render::Ways::walls, 40000);
+    const FilmDifference found = difference(barrel, judge);
+    EXPECT_NEAR(found.first, found.second, 4.0 * found.error);
+    EXPECT_LT(found.error, 0.12 * found.first);
+}
+
+// It veils the picture, and dims it where it covers the front.
+TEST(Passes, OfADustyLensAddUpToEverything) {
+    const TestFolder folder;
+    const Studio studio({.lens = "tessar", .f_number = 4.0, .sensor = kSensor, .grid = kGrid, .dust = dust_in(folder)},
+                        lit_from_everywhere(false));
+    const render::Film imaged = studio.by_pass("imaged", 512);
+    const render::Film direct = studio.by_pass("direct", 512);
+    const render::Film ghosts = studio.by_pass("ghosts", 500);
+    const render::Film barrel = studio.by_pass("barrel", 1000);
+    expect_same_image(
+        render::Picture({{"imaged", &imaged}, {"direct", &direct}, {"ghosts", &ghosts}, {"barrel", &barrel}}),
+        studio.by_pass("everything", 20000), 0.05);
 }
 
 // A sky above a wall: camera paths see it for all that it sends, an even one nearly by themselves.

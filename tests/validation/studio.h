@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -30,6 +31,7 @@ class Studio {
         render::PixelFilter filter;
         optics::StrayMirrors<double> mirrors;
         optics::BarrelFinish barrel;
+        std::optional<render::DustSettings> dust;
     };
 
     Studio(const Setup& setup, const SceneParts& parts)
@@ -37,6 +39,7 @@ class Studio {
           camera_({.lens = setup.lens,
                    .mirrors = setup.mirrors,
                    .barrel = setup.barrel,
+                   .dust = setup.dust,
                    .f_number = setup.f_number,
                    .focus_distance_mm = setup.focus_mm,
                    .sensor = setup.sensor,

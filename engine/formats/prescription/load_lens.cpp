@@ -13,11 +13,9 @@
 
 namespace lensproof::formats {
 
-namespace {
-
-/// The mean of a picture's channels.
-optics::StopTexture stop_texture(const Image& image) {
-    optics::StopTexture texture{.size_x = image.width, .size_y = image.height, .values = {}};
+optics::ApertureTexture read_aperture_texture(const std::filesystem::path& file) {
+    const Image image = read_image(file);
+    optics::ApertureTexture texture{.size_x = image.width, .size_y = image.height, .values = {}};
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             float sum = 0.0F;
@@ -30,8 +28,6 @@ optics::StopTexture stop_texture(const Image& image) {
     return texture;
 }
 
-}  // namespace
-
 optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const optics::Prescription& prescription) {
     for (const std::filesystem::path& file : prescription.catalogues) {
         glasses.add(read_glass_file(file).glasses);
@@ -42,8 +38,8 @@ optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const
 
 optics::Prescription with_stop_picture(optics::Prescription prescription) {
     if (auto* textured = std::get_if<optics::TexturedStop>(&prescription.stop_shape)) {
-        textured->texture = std::make_shared<const optics::StopTexture>(
-            stop_texture(read_image(referred_file(prescription.file, textured->image))));
+        textured->texture = std::make_shared<const optics::ApertureTexture>(
+            read_aperture_texture(referred_file(prescription.file, textured->image)));
     }
     return prescription;
 }

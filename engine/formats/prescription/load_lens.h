@@ -1,5 +1,6 @@
 // engine/formats/prescription/load_lens.h — a lens from its file and from the files that this one names.
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ struct LensSettings {
 
 /// `glasses` behind the prescription's own catalogues. Throws InputError for one that cannot be read.
 optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const optics::Prescription& prescription);
+
+/// The mean of a picture's channels. Throws InputError as `read_image` does.
+optics::ApertureTexture read_aperture_texture(const std::filesystem::path& file);
 
 /// The prescription with the picture that its stop's shape names. Throws InputError where that cannot be read.
 optics::Prescription with_stop_picture(optics::Prescription prescription);

@@ -29,6 +29,17 @@ void append_barrel_bytes(std::string& bytes, const optics::Lens& lens) {
     }
 }
 
+/// Dust on the front: nothing where there is none.
+void append_dust_bytes(std::string& bytes, const optics::Lens& lens) {
+    if (const auto& dust = lens.dust) {
+        append_bytes(bytes, dust->covered->size_x, dust->covered->size_y, dust->semi_diameter, dust->albedo,
+                     dust->through);
+        for (const float covered : dust->covered->values) {
+            append_bytes(bytes, covered);
+        }
+    }
+}
+
 }  // namespace
 
 void CameraPaths::start(const CameraPathRange& range) {
@@ -165,6 +176,7 @@ std::string Camera::hash() const {
             optics::append_lens_bytes(bytes, lens);
         }
         append_barrel_bytes(bytes, *lens_);
+        append_dust_bytes(bytes, *lens_);
         if (exact->precision() == TracePrecision::in_float) {
             bytes += "in float";
         }

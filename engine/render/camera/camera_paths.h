@@ -59,6 +59,14 @@ struct CameraPathBuffer {
     }
     /// Weighs all paths so.
     void leave_heroes_alone();
+
+    /// What a path counts, times a factor.
+    void scale(std::size_t i, double factor) {
+        weight[i] *= factor;
+        for (std::size_t m = 0; m < spectral::kWavelengthsPerPath && !weights.empty(); ++m) {
+            weights[i][m] *= static_cast<float>(factor);
+        }
+    }
 };
 
 /// The centre of the pixel that a path belongs to. `is_box`: pixels are the filter; else that in which its film point

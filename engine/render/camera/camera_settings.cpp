@@ -55,6 +55,15 @@ std::optional<optics::PolygonStop> read_blades(TomlTable& table) {
     return std::nullopt;
 }
 
+DustSettings read_dust(TomlTable& table) {
+    constexpr Bounds kShare{.min = 0.0, .max = 1.0};
+    DustSettings dust{.picture = read_file_name(table, "picture"),
+                      .albedo = table.number("albedo", kShare),
+                      .through = table.number_or("through", DustSettings{}.through, kShare)};
+    table.finish();
+    return dust;
+}
+
 /// What stands between lens and film.
 void read_exposure(TomlTable& table, CameraSettings& camera) {
     camera.zoom = table.text_or("zoom", "");
@@ -67,6 +76,9 @@ void read_exposure(TomlTable& table, CameraSettings& camera) {
                       .blades = table.number_or("blade_reflectance", 0.0, kReflectance)};
     if (auto barrel = table.optional_table("barrel")) {
         camera.barrel = formats::read_barrel(*barrel);
+    }
+    if (auto dust = table.optional_table("dust")) {
+        camera.dust = read_dust(*dust);
     }
     camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
     camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
@@ -149,6 +161,11 @@ std::optional<ModelConflict> model_conflict(const CameraSettings& camera) {
         return ModelConflict{
             "barrel", fmt::format("stands beside model = \"{}\", which has no walls; expected the exact model", name)};
     }
+    if (camera.dust && !traces_surfaces(camera.model)) {
+        return ModelConflict{"dust", fmt::format("stands beside model = \"{}\", which has no front to lie on; expected "
+                                                 "the exact model",
+                                                 name)};
+    }
     return std::nullopt;
 }
 
@@ -196,6 +213,18 @@ optics::Lens camera_lens(const CameraSettings& camera) {
         lens.stop_mask = optics::StopMask(*camera.blades);
     }
     lens.barrel = camera.barrel.value_or(lens.barrel);
+    if (camera.dust) {
+        const optics::LensSurface& first = lens.surfaces.front();
+        if (first.medium.formula == lens.object_medium.formula) {
+            throw InputError(fmt::format("{}: its first surface is no face of glass, expected one for the dust of {}",
+                                         lens.name, camera.dust->picture.string()));
+        }
+        lens.dust = optics::FrontDust{.covered = std::make_shared<const optics::ApertureTexture>(
+                                          formats::read_aperture_texture(camera.dust->picture)),
+                                      .semi_diameter = first.semi_diameter,
+                                      .albedo = camera.dust->albedo,
+                                      .through = camera.dust->through};
+    }
     optics::require_air_in_front(lens, "a camera");
     optics::require_no_gratings(lens, "a camera's field");
     if (optics::refractive_index(lens.surfaces.back().medium.formula, spectral::kLineD) != 1.0) {

@@ -1,5 +1,6 @@
 // engine/render/camera/camera_settings.h — a camera and its spectral sampling as files state them.
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,13 @@ constexpr bool traces_surfaces(LensModel model) {
     return model == LensModel::exact || model == LensModel::exact_float;
 }
 
+/// Dust and scratches on the lens's first surface (optics::FrontDust), as a picture of its clear aperture has them.
+struct DustSettings {
+    std::filesystem::path picture;  // white where they cover the glass
+    double albedo = 0.0;
+    double through = 0.5;
+};
+
 struct CameraSettings {
     std::string lens;  // a file, or the name of a lens that ships; empty where a focal length stands for it
     std::string zoom;  // the position's name or number; empty: the first
@@ -58,6 +66,7 @@ struct CameraSettings {
     std::optional<optics::PolygonStop> blades;
     optics::StrayMirrors<double> mirrors;        // what the sensor and the blades reflect
     std::optional<optics::BarrelFinish> barrel;  // in the place of the lens's own
+    std::optional<DustSettings> dust;
     double f_number = 0.0;
     double focus_distance_mm = 0.0;  // from the first vertex; may be infinite
     Sensor sensor;
@@ -78,9 +87,9 @@ struct CameraSettings {
 AffineMap camera_to_world(const CameraSettings& camera);
 
 /// Reads a camera's table: lens, zoom (optional), coating (optional), blades with blade_curvature and
-/// blade_rotation_deg (optional), sensor_reflectance and blade_reflectance (optional), barrel (optional), f_number,
-/// focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h], shutter_s, iso, response. Throws InputError
-/// naming file, line and key; pixels have to be square.
+/// blade_rotation_deg (optional), sensor_reflectance and blade_reflectance (optional), barrel (optional), dust
+/// (optional), f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h], shutter_s, iso,
+/// response. Throws InputError naming file, line and key; pixels have to be square.
 CameraSettings read_camera_settings(TomlTable& table);
 
 /// The same of a camera that stands in a world, whose exposure may be automatic: without shutter_s, and with exposure =
@@ -95,7 +104,7 @@ struct ModelConflict {
 };
 std::optional<ModelConflict> model_conflict(const CameraSettings& camera);
 
-/// The camera's lens, which it has to have: loaded, given its blades, stopped down and focused.
+/// The camera's lens, which it has to have: loaded, given its blades and its dust, stopped down and focused.
 optics::Lens camera_lens(const CameraSettings& camera);
 
 /// How a render samples wavelengths: `layers` spectral layers of equal width, each made of `strata_per_layer` strata.

@@ -17,7 +17,8 @@ ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wa
       pupil_(pupil::kept_pupil_map(cache, lens_.at(), lens.is_rotationally_symmetric, film_radius_mm,
                                    {.device = device_.get()})),
       slices_(pupil_, lens_.wavelengths()),
-      front_(pupil::front_sphere(lens_.at().front())) {
+      front_(pupil::front_sphere(lens_.at().front())),
+      dust_(lens.dust) {
     if (precision == TracePrecision::in_float) {
         in_float_ = optics::at_wavelengths<float>(lens, wavelengths_nm);
     }
@@ -51,7 +52,10 @@ void ExactCamera::put_on_device() {
 
 ExactCamera::Paths::Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
                           PathCarry carry)
-    : traced_(traced(camera, film, grid, carry)), carry_(carry), is_shared_(film.filter.is_box()) {}
+    : traced_(traced(camera, film, grid, carry)),
+      dust_(camera.dust_ ? &*camera.dust_ : nullptr),
+      carry_(carry),
+      is_shared_(film.filter.is_box()) {}
 
 ExactCamera::Paths::TracedInEither ExactCamera::Paths::traced(const ExactCamera& camera, const FilmSampling& film,
                                                               const spectral::SpectralGrid& grid, PathCarry carry) {
@@ -90,6 +94,11 @@ bool ExactCamera::Paths::fill(CameraPathBuffer& buffer) {
     if (carry_ != PathCarry::hero && !is_shared_) {
         buffer.leave_heroes_alone();
     }
+    if (dust_ != nullptr) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(buffer.size); ++i) {
+            buffer.scale(i, dust_->clear(buffer.ray(i).origin));
+        }
+    }
     return is_filled;
 }
 
@@ -116,6 +125,7 @@ template <class T>
 FilmImportance ExactCamera::traced_importance(const optics::SpectralLens<T>& lens, const Sensor& sensor,
                                               const Ray<double>& ray, const spectral::PathWavelengths& path) const {
     FilmImportance found;
+    const double clear = dust_ ? dust_->clear(ray, lens_.at().front()) : 1.0;
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         const optics::TraceLens<T>& at = lens.at(path.index[i]);
         const optics::TracedRay<T> traced = optics::trace<optics::Direction::forward>(at, optics::convert_ray<T>(ray));
@@ -123,7 +133,7 @@ FilmImportance ExactCamera::traced_importance(const optics::SpectralLens<T>& len
             const FilmMeeting film =
                 meet_film(slices_, lens_.at(0).image_z, path.index[i], optics::convert_ray<double>(traced.ray));
             found.at_px[i] = sensor.pixel(film.point);
-            found.transmittance[i] = traced.transmittance;
+            found.transmittance[i] = clear * traced.transmittance;
             found.pdf[i] = film.pdf;
         }
     }

@@ -25,6 +25,8 @@ enum class TracePrecision { in_double, in_float };
 /// In float every ray through the glass is, outwards and inwards, in packets twice as wide; it leaves the lens some
 /// ulps of a float beside the one in double, and now and then another's fate at a rim. Maps, what is drawn from them
 /// and the scene are in double.
+///
+/// Dust on the front takes from what a path counts, and changes nothing else about it.
 class ExactCamera {
   public:
     /// Of film points within `film_radius_mm` of the axis. `meets_light_paths`: else `sample` and `pdf` must not be
@@ -56,6 +58,7 @@ class ExactCamera {
                                      const spectral::SpectralGrid& grid, PathCarry carry);
 
         TracedInEither traced_;
+        const optics::FrontDust* dust_;  // or null
         PathCarry carry_;
         bool is_shared_;  // wider filters than the box draw film points unevenly: the hero stays alone
     };
@@ -93,6 +96,7 @@ class ExactCamera {
     /// regions.
     std::optional<pupil::EntranceMap> entrance_;
     pupil::BoundingSphere front_;
+    std::optional<optics::FrontDust> dust_;
     std::optional<std::variant<DeviceCamera<double>, DeviceCamera<float>>> on_device_;
 };
 

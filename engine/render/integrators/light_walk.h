@@ -16,8 +16,8 @@ namespace lensproof::render {
 enum class LightPathsKept {
     all,
     /// Beside camera paths: those that come to the camera straight, of the sky what camera paths leave of it
-    /// (`sky_by_camera`); and those of point lights whose first scattering is by a mirror or smooth glass, which no
-    /// camera path makes.
+    /// (`sky_by_camera`), of dust on the front nothing; and those of point lights whose first scattering is by a mirror
+    /// or smooth glass, which no camera path makes.
     beside_camera_paths,
     /// Those that come to the camera straight from a sun.
     of_suns,
@@ -138,23 +138,27 @@ class LightWalk {
     }
 
     void join_from_light(const scene::LightStart& start) {
+        const bool is_shared = kept_ == LightPathsKept::beside_camera_paths;
         const LightOrigin from{start.is_at_infinity ? start.direction : start.point, start.is_at_infinity};
-        join(from, [&](const Entry& in) {
-            if (start.is_at_infinity) {
-                const bool is_shared = kept_ == LightPathsKept::beside_camera_paths;
-                const double kept = is_shared ? 1.0 - sky_by_camera(start.pdf) : 1.0;
-                return Carried{.light = is_blocked(in.end - scene_.lights.beyond_mm(in.end) * start.direction, in.end)
+        join(
+            from,
+            [&](const Entry& in) {
+                if (start.is_at_infinity) {
+                    const double kept = is_shared ? 1.0 - sky_by_camera(start.pdf) : 1.0;
+                    return Carried{
+                        .light = is_blocked(in.end - scene_.lights.beyond_mm(in.end) * start.direction, in.end)
+                                     ? spectral::SpectralSample()
+                                     : scene::scaled(start.value, kept),
+                        .others = LightMisWeight::others(start, 1.0)};
+                }
+                const spectral::SpectralSample intensity = scene_.lights.intensity(start, in.direction);
+                const Vec3d origin = scene::ray_origin(start.point, start.normal, start.error_mm, in.direction);
+                return Carried{.light = spectral::is_black(intensity) || is_blocked(origin, in.end)
                                             ? spectral::SpectralSample()
-                                            : scene::scaled(start.value, kept),
-                               .others = LightMisWeight::others(start, 1.0)};
-            }
-            const spectral::SpectralSample intensity = scene_.lights.intensity(start, in.direction);
-            const Vec3d origin = scene::ray_origin(start.point, start.normal, start.error_mm, in.direction);
-            return Carried{.light = spectral::is_black(intensity) || is_blocked(origin, in.end)
-                                        ? spectral::SpectralSample()
-                                        : intensity,
-                           .others = LightMisWeight::others(start, std::abs(dot(start.normal, in.direction)))};
-        });
+                                            : intensity,
+                               .others = LightMisWeight::others(start, std::abs(dot(start.normal, in.direction)))};
+            },
+            is_shared);
     }
 
     void join_from_surface(const PathVertex& vertex, const spectral::SpectralSample& power) {
@@ -183,12 +187,15 @@ class LightWalk {
 
     /// Draws a ray into the camera and brings its light to the film.
     template <class CarriedBy>
-    void join(const LightOrigin& from, const CarriedBy& carried_by) {
-        const auto entry = entrance_.draw(from, path_, is_hero_alone_, numbers_);
+    void join(const LightOrigin& from, const CarriedBy& carried_by, bool leaves_dust_out = false) {
+        auto entry = entrance_.draw(from, path_, is_hero_alone_, numbers_);
         if (!entry) {
             return;
         }
         rays_ += spectral::kWavelengthsPerPath;
+        for (std::size_t i = 0; leaves_dust_out && i < spectral::kWavelengthsPerPath; ++i) {
+            entry->weight[i] = entry->is_by_dust[i] ? 0.0 : entry->weight[i];
+        }
         if (entry->is_dark()) {
             return;
         }

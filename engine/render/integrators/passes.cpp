@@ -83,7 +83,7 @@ const std::vector<Pass>& passes() {
         {"direct", "lights as they are seen", direct, true},
         {"ghosts", "light that two surfaces of the lens reflect", ghosts},
         {"faint-ghosts", "light that is reflected four times and more", faint_ghosts},
-        {"barrel", "light that the inside of the lens scatters", barrel},
+        {"barrel", "light that the inside of the lens scatters, and dust on its front", barrel},
         {"diffracted", "light that the edges of the stop turn aside: halos and streaks", diffracted},
         {"waves",
          "suns, imaged and diffracted by waves: in the place of what \"direct\" and \"diffracted\" have of them",

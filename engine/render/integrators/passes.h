@@ -15,7 +15,7 @@ namespace lensproof::render {
 ///   direct        from a light, through the lens: lamps as they are seen
 ///   ghosts        reflected twice in the lens
 ///   faint-ghosts  reflected four times and more
-///   barrel        scattered by a wall inside the lens, once or more
+///   barrel        scattered by a wall inside the lens or dust on its front, once or more
 ///   diffracted    turned aside by the edges of the stop; what images is less by that, where both are rendered
 ///   waves         straight from a sun, imaged and diffracted: in the place of what `direct` and `diffracted` have of
 ///   it

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/base/angle.h"
 #include "engine/render/integrators/path_tracer.h"
 #include "engine/render/stray/walk_numbers.h"
 
@@ -41,6 +42,19 @@ void StrayCameraPaths::operator()(const TileSamples& samples, FilmTile& tile) co
     }
 }
 
+double StrayCameraPaths::shining_on(const Ray<double>& dust, const spectral::PathWavelengths& path,
+                                    PathSampler& numbers) const {
+    const scene::Scene& scene = view_.scene();
+    const Ray<double> grain = front_.camera().to_world(dust);
+    const auto u = numbers.next();
+    const auto light = scene.lights.sample(grain.origin, path, u[0], u[1], u[2]);
+    const double cosine = light ? dot(grain.direction, light->direction) : 0.0;
+    if (!(cosine > 0.0) || scene::is_occluded(*scene.geometry, grain.origin, light->end)) {
+        return 0.0;
+    }
+    return cosine / kPi * scene::light_of(light->value, light->place, path)[0];
+}
+
 float StrayCameraPaths::irradiance(Vec2d pixel, const spectral::PathWavelengths& path, PathSampler& numbers,
                                    FilmTile& tile) const {
     const Camera& camera = front_.camera();
@@ -64,9 +78,15 @@ float StrayCameraPaths::irradiance(Vec2d pixel, const spectral::PathWavelengths&
     double brought = 0.0;  // radiance
     const auto end_at = [&](optics::StrayEnd end, const optics::StrayLight& out) {
         if (end == optics::StrayEnd::front && counts(ways_, out)) {
-            const PathRadiance found = trace_path(view_.scene(), camera.to_world(out.ray), path, view_.paths, numbers);
+            PathSettings onwards = view_.paths;
+            onwards.shares_sky = !out.dust_normal;  // all that shines on dust itself is asked for here
+            const PathRadiance found = trace_path(view_.scene(), camera.to_world(out.ray), path, onwards, numbers);
             tile.count_rays(found.rays);
             brought += out.weight * (found.radiance[0] + found.hero_radiance);
+            if (out.dust_normal) {
+                tile.count_rays(1);
+                brought += out.weight * shining_on({out.ray.origin, *out.dust_normal}, path, numbers);
+            }
         }
     };
     const optics::StrayEnd end =

@@ -11,7 +11,8 @@ namespace lensproof::render {
 
 /// Camera paths that go from the film to the front by chance (optics::StrayWalk), and on in the scene as those that
 /// image do (path_tracer.h): they see a sky, a room or a lit wall for all that it sends. Light that comes straight from
-/// a lamp or a sun is left to light paths, which aim at the front from one however small.
+/// a lamp or a sun is left to light paths, which aim at the front from one however small; but dust on the front is a
+/// surface as others are, from which lights are asked.
 ///
 /// A path has one wavelength, since each leaves the lens another way. From the first wall it goes several ways, each
 /// with its share, since few lead out. A TileRenderer.
@@ -26,6 +27,9 @@ class StrayCameraPaths {
     /// The irradiance that one path brings, W·m⁻²·nm⁻¹, filter weight included.
     [[nodiscard]] float irradiance(Vec2d pixel, const spectral::PathWavelengths& path, PathSampler& numbers,
                                    FilmTile& tile) const;
+    /// What lights send to a grain with its normal, over π.
+    [[nodiscard]] double shining_on(const Ray<double>& dust, const spectral::PathWavelengths& path,
+                                    PathSampler& numbers) const;
 
     View view_;
     CameraFront front_;

@@ -53,6 +53,16 @@ Vec2d CameraFront::film_px(const Ray<double>& ray, const optics::TraceLens<doubl
     return camera_->sensor().pixel({point.x, point.y});
 }
 
+double CameraFront::clear(const Ray<double>& ray) const {
+    const auto& dust = camera_->lens()->dust;
+    return dust ? dust->clear(ray, middle()) : 1.0;
+}
+
+double CameraFront::clear(const Vec3d& front) const {
+    const auto& dust = camera_->lens()->dust;
+    return dust ? dust->clear(front) : 1.0;
+}
+
 double CameraFront::film_radius_mm() const {
     return camera_->sensor().half_diagonal_mm(camera_->film().filter.radius_px() - 0.5);
 }

@@ -31,6 +31,11 @@ class CameraFront {
     /// Where a ray of lens space behind the last surface lands on the film.
     [[nodiscard]] Vec2d film_px(const Ray<double>& ray, const optics::TraceLens<double>& lens) const;
 
+    /// What dust on the front lets by, where a ray into the lens meets it or at a point of the first surface (lens
+    /// space).
+    [[nodiscard]] double clear(const Ray<double>& ray) const;
+    [[nodiscard]] double clear(const Vec3d& front) const;
+
     [[nodiscard]] const Camera& camera() const { return *camera_; }
     [[nodiscard]] const optics::SpectralLens<double>& lens() const { return camera_->exact().lens(); }
     /// That at the middle of the band.

@@ -74,7 +74,8 @@ std::optional<Entry> DiffractedEntrance::draw(const LightOrigin& from, const spe
             entry = Entry{.direction = world.direction, .end = world.origin};
         }
         land(*entry, i, at, point, ray,
-             mask_.perimeter() * semi_diameter_ * aimed->beam_per_mm2 * aimed->transmittance);
+             mask_.perimeter() * semi_diameter_ * aimed->beam_per_mm2 * aimed->transmittance *
+                 front_.clear(aimed->front.origin));
     }
     return entry;
 }
@@ -101,7 +102,7 @@ std::optional<Entry> DiffractedEntrance::meet(const Ray<double>& ray, const spec
         if (!entry) {
             entry = Entry{.direction = ray.direction, .end = front_.camera().to_world({stop->front, {}}).origin};
         }
-        land(*entry, i, at, stop->point, *diffracted, stop->transmittance);
+        land(*entry, i, at, stop->point, *diffracted, stop->transmittance * front_.clear(stop->front));
     }
     return entry;
 }

@@ -22,6 +22,8 @@ struct Entry {
     std::array<Vec2d, spectral::kWavelengthsPerPath> at_px;  // where it lands on the film, a wavelength each
     /// What is left of it over the pdf of what the wavelength drew by itself. 0: it does not arrive.
     std::array<double, spectral::kWavelengthsPerPath> weight{};
+    /// Dust on the front scattered it, before anything else in the camera did.
+    std::array<bool, spectral::kWavelengthsPerPath> is_by_dust{};
     /// Of what they all drew: per solid angle at the origin, of far light per mm² across it; of a ray that comes anyway
     /// no more than the probability of what was left to chance.
     double pdf = 1.0;

@@ -45,11 +45,12 @@ std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceB
 
 Entry GhostEntrance::followed(Entry entry, const Ray<double>& ray, const optics::GhostPath& ghost,
                               const spectral::PathWavelengths& path) const {
+    const double clear = front_.clear(ray);
     const optics::GhostLanes traced = optics::trace_ghost_lanes(front_.lens(), path.index, ghost, ray, mirrors_);
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         if (traced.arrives[i] && traced.ray[i].direction.z > 0.0) {
             entry.at_px[i] = front_.film_px(traced.ray[i], front_.lens().at(path.index[i]));
-            entry.weight[i] = traced.transmittance[i];
+            entry.weight[i] = clear * traced.transmittance[i];
         }
     }
     return entry;

@@ -9,7 +9,7 @@ WalkEntrance::WalkEntrance(const Camera& camera, Ways ways)
     : front_(camera), ways_(ways), barrel_(camera.lens().value()) {}
 
 bool is_dark(Ways ways, const optics::Barrel& barrel) {
-    return ways == Ways::walls && barrel.finish().is_black();
+    return ways == Ways::walls && barrel.is_black();
 }
 
 bool counts(Ways ways, const optics::StrayLight& light) {
@@ -66,6 +66,7 @@ Entry WalkEntrance::landed(Entry entry, const Ray<double>& ray, const spectral::
             }
         });
         entry.weight[i] = places * kept;
+        entry.is_by_dust[i] = light.dust_normal.has_value();
     }
     return entry;
 }

@@ -40,17 +40,18 @@ WaveImage::WaveImage(const optics::Lens& lens, const Ray<double>& chief, double 
                         "is made by rays, without the pass \"waves\"",
                         lens.name, wavelength_nm));
     }
-    integrate_light(field);
+    integrate_light(field, lens.dust);
     spread(psf);
 }
 
-void WaveImage::integrate_light(const analysis::PolychromaticField& field) {
+void WaveImage::integrate_light(const analysis::PolychromaticField& field,
+                                const std::optional<optics::FrontDust>& dust) {
     constexpr int kRings = 6;
     const analysis::PolychromaticField::Part& part = field.parts.front();
     for (const optics::RegionNode& node : optics::region_quadrature(part.outline, kRings)) {
         const Ray<double> ray = field.bundle.ray(node.point);
         const optics::TracedRay<double> traced = optics::trace_past_rims(part.lens, ray);
-        light_mm2_ += node.weight * traced.transmittance;
+        light_mm2_ += node.weight * traced.transmittance * (dust ? dust->clear(ray, part.lens) : 1.0);
         nodes_.push_back({.front = ray.origin, .light_mm2 = light_mm2_});
     }
 }

@@ -1,5 +1,6 @@
 // engine/render/stray/wave_image.h — the image of a distant light as waves make it.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "engine/analysis/psf.h"
@@ -42,7 +43,7 @@ class WaveImage {
         Vec3d front;
         double light_mm2 = 0.0;  // its own and of all before it
     };
-    void integrate_light(const analysis::PolychromaticField& field);
+    void integrate_light(const analysis::PolychromaticField& field, const std::optional<optics::FrontDust>& dust);
     void spread(const analysis::Psf& psf);
 
     static constexpr int kPixelsPerAiry = 2;  // twice as many as the beam on the axis needs

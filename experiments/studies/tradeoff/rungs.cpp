@@ -189,6 +189,7 @@ render::SceneSetup on_rung(render::SceneSetup setup, const Rung& rung) {
         setup.stray_camera = setup.camera;
         setup.camera.blades.reset();
         setup.camera.barrel.reset();
+        setup.camera.dust.reset();
     }
     setup.camera.model = rung.model;
     if (rung.wavelengths) {

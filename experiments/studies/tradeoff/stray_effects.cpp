@@ -6,6 +6,7 @@
 
 #include "engine/base/angle.h"
 #include "engine/base/input_error.h"
+#include "engine/optics/barrel.h"
 #include "engine/optics/ghost_path.h"
 #include "engine/optics/trace.h"
 #include "engine/spectral/wavelengths.h"
@@ -87,7 +88,7 @@ std::vector<Effect> found_by_passes(const Pilot& pilot) {
     std::vector<Effect> effects = {veil_effect(pilot, "ghosts", ghosts),
                                    veil_effect(pilot, "faint-ghosts", {{most * most, 0.0}, ghosts.ns_per_sample})};
     effects[1].is_bound = true;
-    const bool is_black = pilot.camera().lens()->barrel.is_black();
+    const bool is_black = optics::Barrel(*pilot.camera().lens()).is_black();
     if (!is_black) {
         effects.push_back(veil_effect(pilot, "barrel", veil_of(pilot, "barrel")));
     }
