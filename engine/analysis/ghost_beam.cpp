@@ -8,6 +8,7 @@
 #include "engine/analysis/ghost_rays.h"
 #include "engine/base/infinity.h"
 #include "engine/optics/field_bundle.h"
+#include "engine/optics/packet/ghost_lanes.h"
 #include "engine/optics/surface_axes.h"
 
 namespace lensproof::analysis {
@@ -84,8 +85,17 @@ std::vector<RimRay> rim_rays(const GhostScene& scene, const optics::GhostPath& p
     }
     std::vector<RimRay> found;
     found.reserve(offsets.size());
-    for (const Vec2d offset : offsets) {
-        found.push_back(traced_rim_ray(scene, path, offset));
+    const optics::SpectralLens<double> lens({scene.lens});
+    for (std::size_t first = 0; first < offsets.size(); first += optics::kFollowedRays) {
+        optics::FollowedRays rays;
+        const std::size_t count = std::min(optics::kFollowedRays, offsets.size() - first);
+        for (std::size_t i = 0; i < optics::kFollowedRays; ++i) {
+            rays.ray[i].ray = scene.beam.ray(offsets[first + std::min(i, count - 1)]);
+        }
+        optics::follow_ghost_rays(lens, path, scene.mirrors, rays);
+        for (std::size_t i = 0; i < count; ++i) {
+            found.push_back(rim_ray(scene, rays.worst[i], rays.ray[i]));
+        }
     }
     return found;
 }

@@ -12,21 +12,32 @@
 
 namespace lensproof::optics {
 
-/// A few wavelengths of a ray on their way: `TravellingRay`, `run_to_surface` and `reflect_at_sensor` for a packet,
-/// with the same steps in the same order.
-template <class Abi>
+/// A few rays on their way, each at its wavelength: `TravellingRay`, `run_to_surface` and `reflect_at_sensor` for a
+/// packet, with the same steps in the same order.
+template <class Abi, Rims rims>
 class GhostTracer {
   public:
     using Numbers = Pack<double, Abi>;
     using Mask = PackMask<double, Abi>;
     static constexpr int kLanes = Numbers::kLanes;
 
-    GhostTracer(const KernelLens<double>& lens, const GhostWay& way, const std::uint16_t* wavelengths)
-        : lens_(lens),
-          way_(way),
-          wavelengths_(wavelengths),
-          origin_(everywhere(way.ray.origin)),
-          direction_(everywhere(way.ray.direction)) {}
+    /// Rays as they enter the lens.
+    GhostTracer(const KernelLens<double>& lens, const GhostWay& way, const std::uint16_t* wavelengths,
+                const Vec3<Numbers>& origin, const Vec3<Numbers>& direction)
+        : origin_(origin), direction_(direction), lens_(lens), way_(way), wavelengths_(wavelengths) {}
+
+    static Vec3<Numbers> everywhere(const Vec3d& v) { return {Numbers(v.x), Numbers(v.y), Numbers(v.z)}; }
+    template <class Of>
+    static Vec3<Numbers> by_lane(const Of& of) {
+        Vec3<Numbers> lanes = everywhere({});
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const Vec3d& v = of(lane);
+            lanes.x.set(lane, v.x);
+            lanes.y.set(lane, v.y);
+            lanes.z.set(lane, v.z);
+        }
+        return lanes;
+    }
 
     /// Along the whole ghost, as far as any of them goes.
     void trace() {
@@ -49,23 +60,17 @@ class GhostTracer {
         }
     }
 
-    /// Into the lanes from `first` on.
-    void store(GhostLanes& lanes, std::size_t first) const {
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const std::size_t to = first + static_cast<std::size_t>(lane);
-            lanes.arrives[to] = going_[lane];
-            if (going_[lane]) {
-                lanes.ray[to] = {{origin_.x[lane], origin_.y[lane], origin_.z[lane] + last_vertex_z_},
-                                 {direction_.x[lane], direction_.y[lane], direction_.z[lane]}};
-                lanes.transmittance[to] =
-                    lens_.absorbs ? at_surfaces_[lane] * lane_fading(optical_depth_[lane]) : at_surfaces_[lane];
-            }
-        }
+    [[nodiscard]] bool gets_through(int lane) const { return going_[lane]; }
+    [[nodiscard]] Ray<double> ray(int lane) const {
+        return {{origin_.x[lane], origin_.y[lane], origin_.z[lane] + last_vertex_z_},
+                {direction_.x[lane], direction_.y[lane], direction_.z[lane]}};
     }
+    [[nodiscard]] double transmittance(int lane) const {
+        return lens_.absorbs ? at_surfaces_[lane] * lane_fading(optical_depth_[lane]) : at_surfaces_[lane];
+    }
+    [[nodiscard]] WorstLimit worst(int lane) const { return {others_[lane], ratio_squared_[lane]}; }
 
   private:
-    static Vec3<Numbers> everywhere(const Vec3d& v) { return {Numbers(v.x), Numbers(v.y), Numbers(v.z)}; }
-
     [[nodiscard]] Numbers by_wavelength(const double* table) const { return Numbers::gather(table, wavelengths_); }
 
     void cross(int surface, bool is_forward, const Numbers& distance) {
@@ -103,7 +108,7 @@ class GhostTracer {
         if (special != nullptr && special->has_shape) {
             std::tie(met.at, met.normal) = intersect(special->shape, from_vertex, direction, heading);
         } else {
-            if (is_forward ? surface.from_far_forward : surface.from_far_reverse) {
+            if (rims == Rims::follow || (is_forward ? surface.from_far_forward : surface.from_far_reverse)) {
                 to_vertex = distance_to_vertex(from_vertex, direction);
                 from_vertex = from_vertex + to_vertex * direction;
             }
@@ -119,13 +124,40 @@ class GhostTracer {
         const double limit = lens_.surfaces[index].semi_diameter_squared;
         const Numbers r2 = point.x * point.x + point.y * point.y;
         const Mask is_inside = r2 <= Numbers(limit > 0.0 ? limit : -1.0);
-        const Numbers by_rim = select(is_inside, Numbers(1.0), Numbers(0.0));
+        Numbers by_rim = select(is_inside, Numbers(1.0), Numbers(0.0));
         if (special == nullptr || special->mask.is_full_circle()) {
             return by_rim;
         }
         return Numbers::by_lane(going_ && is_inside, by_rim, [&](int lane) {
             return lane_mask_transmittance(*lens_.lens, index, point.x[lane], point.y[lane]);
         });
+    }
+
+    /// Where the packet is now, of rays that have met the surface.
+    void meet_limit(int index, const SpecialSurface<double>* special, bool by_blades) {
+        const TraceSurface<double>& surface = lens_.surfaces[index];
+        Vec3<Numbers> at = origin_;
+        if (special != nullptr) {
+            const Numbers z = origin_.z + Numbers(surface.vertex_z);
+            at = special->to_own(Vec3<Numbers>{origin_.x - Numbers(special->vertex.x),
+                                               origin_.y - Numbers(special->vertex.y), z - Numbers(surface.vertex_z)});
+        }
+        Mask is_rim = going_;
+        if (by_blades || (special != nullptr && !special->mask.is_full_circle())) {
+            Numbers is_other(0.0);
+            for (int lane = 0; lane < kLanes; ++lane) {
+                if (!going_[lane]) {
+                    continue;
+                }
+                if (const auto margin = lane_limit_margin(*lens_.lens, index, {at.x[lane], at.y[lane]}, by_blades)) {
+                    others_.set(lane, others_[lane] < *margin ? *margin : others_[lane]);
+                    is_other.set(lane, 1.0);
+                }
+            }
+            is_rim = is_rim && is_other < Numbers(1.0);
+        }
+        const Numbers ratio = (at.x * at.x + at.y * at.y) / Numbers(surface.semi_diameter_squared);
+        ratio_squared_ = select(is_rim && ratio_squared_ < ratio, ratio, ratio_squared_);
     }
 
     void run_to_surface(int index, bool is_forward, bool reflects) {
@@ -151,8 +183,14 @@ class GhostTracer {
             origin_ = {turned.x + Numbers(special->vertex.x), turned.y + Numbers(special->vertex.y), turned.z};
         }
 
-        const Numbers open = opening(index, special, met.at.point);
+        Numbers open = opening(index, special, met.at.point);
         const bool by_blades = reflects && reflects_by_blades(surface);
+        if constexpr (rims == Rims::follow) {
+            meet_limit(index, special, by_blades);
+            if (!by_blades) {
+                open = select(open > Numbers(0.0), open, Numbers(1.0));
+            }
+        }
         going_ = going_ && (by_blades ? open < Numbers(1.0) : open > Numbers(0.0));
 
         const auto& of = lens_.indices[index];
@@ -200,24 +238,56 @@ class GhostTracer {
         });
     }
 
+    Vec3<Numbers> origin_;  // z from the last vertex passed
+    Vec3<Numbers> direction_;
+    Numbers at_surfaces_{1.0};
+    Numbers optical_depth_{0.0};
+    Numbers others_{-1.0};  // WorstLimit
+    Numbers ratio_squared_{0.0};
+    Mask going_{true};
     const KernelLens<double>& lens_;
     const GhostWay& way_;
     const std::uint16_t* wavelengths_;
-    Vec3<Numbers> origin_;  // z from the last vertex passed
-    Vec3<Numbers> direction_;
     double last_vertex_z_ = 0.0;
-    Numbers at_surfaces_{1.0};
-    Numbers optical_depth_{0.0};
-    Mask going_{true};
 };
 
 template <class Abi>
-[[gnu::flatten]] void trace_lanes(const KernelLens<double>& lens, const GhostWay& way, GhostLanes& lanes) {
-    using Tracer = GhostTracer<Abi>;
+[[gnu::flatten]] void trace_lanes(const KernelLens<double>& lens, const GhostWay& way, const std::uint16_t* wavelengths,
+                                  const Ray<double>& ray, GhostLanes& lanes) {
+    using Tracer = GhostTracer<Abi, Rims::clip>;
     for (std::size_t first = 0; first < kGhostLanes; first += Tracer::kLanes) {
-        Tracer tracer(lens, way, way.wavelengths + first);
+        Tracer tracer(lens, way, wavelengths + first, Tracer::everywhere(ray.origin),
+                      Tracer::everywhere(ray.direction));
         tracer.trace();
-        tracer.store(lanes, first);
+        for (int lane = 0; lane < Tracer::kLanes; ++lane) {
+            const std::size_t to = first + static_cast<std::size_t>(lane);
+            lanes.arrives[to] = tracer.gets_through(lane);
+            if (lanes.arrives[to]) {
+                lanes.ray[to] = tracer.ray(lane);
+                lanes.transmittance[to] = tracer.transmittance(lane);
+            }
+        }
+    }
+}
+
+template <class Abi>
+[[gnu::flatten]] void follow_rays(const KernelLens<double>& lens, const GhostWay& way, FollowedRays& rays) {
+    using Tracer = GhostTracer<Abi, Rims::follow>;
+    const std::uint16_t wavelengths[kFollowedRays] = {};
+    for (std::size_t first = 0; first < kFollowedRays; first += Tracer::kLanes) {
+        const TracedRay<double>* given = rays.ray.data() + first;
+        Tracer tracer(lens, way, wavelengths,
+                      Tracer::by_lane([&](int lane) -> const Vec3d& { return given[lane].ray.origin; }),
+                      Tracer::by_lane([&](int lane) -> const Vec3d& { return given[lane].ray.direction; }));
+        tracer.trace();
+        for (int lane = 0; lane < Tracer::kLanes; ++lane) {
+            const std::size_t at = first + static_cast<std::size_t>(lane);
+            TracedRay<double>& to = rays.ray[at];
+            to.status = tracer.gets_through(lane) ? RayStatus::ok : RayStatus::missed;
+            to.ray = tracer.ray(lane);
+            to.transmittance = tracer.transmittance(lane);
+            rays.worst[at] = tracer.worst(lane);
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 namespace lensproof::optics {
 
-GhostKernel avx2_ghost_kernel() {
-    return trace_lanes<GhostAbi<4>>;
+GhostKernels avx2_ghost_kernels() {
+    return {trace_lanes<GhostAbi<4>>, follow_rays<GhostAbi<4>>};
 }
 
 }  // namespace lensproof::optics

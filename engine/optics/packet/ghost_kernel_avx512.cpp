@@ -2,8 +2,8 @@
 
 namespace lensproof::optics {
 
-GhostKernel avx512_ghost_kernel() {
-    return trace_lanes<GhostAbi<4>>;
+GhostKernels avx512_ghost_kernels() {
+    return {trace_lanes<GhostAbi<4>>, follow_rays<GhostAbi<8>>};
 }
 
 }  // namespace lensproof::optics

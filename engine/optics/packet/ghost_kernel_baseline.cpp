@@ -2,8 +2,8 @@
 
 namespace lensproof::optics {
 
-GhostKernel baseline_ghost_kernel() {
-    return trace_lanes<GhostAbi<2>>;
+GhostKernels baseline_ghost_kernels() {
+    return {trace_lanes<GhostAbi<2>>, follow_rays<GhostAbi<2>>};
 }
 
 }  // namespace lensproof::optics

@@ -2,8 +2,8 @@
 
 namespace lensproof::optics {
 
-GhostKernel scalar_ghost_kernel() {
-    return trace_lanes<GhostAbi<1>>;
+GhostKernels scalar_ghost_kernels() {
+    return {trace_lanes<GhostAbi<1>>, follow_rays<GhostAbi<1>>};
 }
 
 }  // namespace lensproof::optics

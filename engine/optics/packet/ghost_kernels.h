@@ -1,4 +1,4 @@
-// engine/optics/packet/ghost_kernels.h — the loop of ghost_lanes.h, one for each width, as a plain function.
+// engine/optics/packet/ghost_kernels.h — the loops of ghost_lanes.h, for each width, as plain functions.
 #pragma once
 #include "engine/optics/packet/ghost_lanes.h"
 #include "engine/optics/packet/trace_kernels.h"
@@ -9,8 +9,6 @@ namespace lensproof::optics {
 struct GhostWay {
     const int* reflections = nullptr;
     int count = 0;
-    const std::uint16_t* wavelengths = nullptr;
-    Ray<double> ray;
     StrayMirrors<double> mirrors;
     double image_z = 0.0;
 };
@@ -19,12 +17,19 @@ struct GhostWay {
 double lane_coated_reflectance(const SpectralLens<double>& lens, int wavelength, int surface, bool forward,
                                double cos_incidence);
 
-using GhostKernel = void (*)(const KernelLens<double>& lens, const GhostWay& way, GhostLanes& lanes);
+/// `GhostLimit::margin` of one ray, where `WorstLimit` has no ratio; else none. Not inline either.
+std::optional<double> lane_limit_margin(const SpectralLens<double>& lens, int surface, Vec2d at, bool by_blades);
+
+struct GhostKernels {
+    void (*trace)(const KernelLens<double>& lens, const GhostWay& way, const std::uint16_t* wavelengths,
+                  const Ray<double>& ray, GhostLanes& lanes) = nullptr;
+    void (*follow)(const KernelLens<double>& lens, const GhostWay& way, FollowedRays& rays) = nullptr;
+};
 
 /// Per level.
-GhostKernel scalar_ghost_kernel();
-GhostKernel baseline_ghost_kernel();
-GhostKernel avx2_ghost_kernel();    // x86-64 alone
-GhostKernel avx512_ghost_kernel();  // x86-64 alone
+GhostKernels scalar_ghost_kernels();
+GhostKernels baseline_ghost_kernels();
+GhostKernels avx2_ghost_kernels();    // x86-64 alone
+GhostKernels avx512_ghost_kernels();  // x86-64 alone
 
 }  // namespace lensproof::optics

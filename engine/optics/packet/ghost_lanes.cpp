@@ -6,16 +6,23 @@ namespace lensproof::optics {
 
 namespace {
 
-const LoopsByLevel<GhostKernel>& ghost_kernels() {
-    static const LoopsByLevel<GhostKernel> found{
-        {SimdLevel::scalar, scalar_ghost_kernel},
-        {SimdLevel::baseline, baseline_ghost_kernel},
+const LoopsByLevel<GhostKernels>& ghost_kernels() {
+    static const LoopsByLevel<GhostKernels> found{
+        {SimdLevel::scalar, scalar_ghost_kernels},
+        {SimdLevel::baseline, baseline_ghost_kernels},
 #ifdef LENSPROOF_X86_KERNELS
-        {SimdLevel::avx2, avx2_ghost_kernel},
-        {SimdLevel::avx512, avx512_ghost_kernel},
+        {SimdLevel::avx2, avx2_ghost_kernels},
+        {SimdLevel::avx512, avx512_ghost_kernels},
 #endif
     };
     return found;
+}
+
+GhostWay way_of(const SpectralLens<double>& lens, const GhostPath& path, const StrayMirrors<double>& mirrors) {
+    return {.reflections = path.data(),
+            .count = static_cast<int>(path.size()),
+            .mirrors = mirrors,
+            .image_z = lens.at().front().image_z};
 }
 
 }  // namespace
@@ -32,15 +39,20 @@ GhostLanes trace_ghost_lanes(const SpectralLens<double>& lens, std::span<const s
                              const GhostPath& path, const Ray<double>& ray, const StrayMirrors<double>& mirrors,
                              std::optional<SimdLevel> level) {
     GhostLanes lanes;
-    ghost_kernels().at(level)(kernel_lens(lens),
-                              {.reflections = path.data(),
-                               .count = static_cast<int>(path.size()),
-                               .wavelengths = wavelengths.data(),
-                               .ray = ray,
-                               .mirrors = mirrors,
-                               .image_z = lens.at().front().image_z},
-                              lanes);
+    ghost_kernels().at(level).trace(kernel_lens(lens), way_of(lens, path, mirrors), wavelengths.data(), ray, lanes);
     return lanes;
+}
+
+std::optional<double> lane_limit_margin(const SpectralLens<double>& lens, int surface, Vec2d at, bool by_blades) {
+    const TraceLens<double>& first = lens.at().front();
+    const TraceSurface<double>& limiting = first.surfaces[static_cast<std::size_t>(surface)];
+    const GhostLimit limit = ghost_limit(limiting, special_of(first, limiting), at, by_blades);
+    return by_blades || limit.edge_margin > -1.0 ? std::optional(limit.margin()) : std::nullopt;
+}
+
+void follow_ghost_rays(const SpectralLens<double>& lens, const GhostPath& path, const StrayMirrors<double>& mirrors,
+                       FollowedRays& rays, std::optional<SimdLevel> level) {
+    ghost_kernels().at(level).follow(kernel_lens(lens), way_of(lens, path, mirrors), rays);
 }
 
 }  // namespace lensproof::optics

@@ -1,4 +1,5 @@
-// engine/optics/packet/ghost_lanes.h — the wavelengths of one ray along one ghost, side by side.
+// engine/optics/packet/ghost_lanes.h — rays along one ghost side by side: one at several wavelengths, or several at
+// one.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -6,7 +7,7 @@
 #include <span>
 
 #include "engine/base/simd_level.h"
-#include "engine/optics/ghost_path.h"
+#include "engine/optics/ghost_limits.h"
 #include "engine/optics/packet/spectral_lens.h"
 
 namespace lensproof::optics {
@@ -25,5 +26,19 @@ struct GhostLanes {
 GhostLanes trace_ghost_lanes(const SpectralLens<double>& lens, std::span<const std::uint16_t, kGhostLanes> wavelengths,
                              const GhostPath& path, const Ray<double>& ray, const StrayMirrors<double>& mirrors,
                              std::optional<SimdLevel> level = std::nullopt);
+
+inline constexpr std::size_t kFollowedRays = 8;
+
+/// Rays that are followed past rims: as they enter the lens, and what becomes of each.
+struct FollowedRays {
+    std::array<TracedRay<double>, kFollowedRays>
+        ray;                                      // of those that do not get through the status alone means anything
+    std::array<WorstLimit, kFollowedRays> worst;  // of all limits that it has met
+};
+
+/// `trace_ghost` with Rims::follow at the lens's first wavelength, for rays that have their `ray` set; the status is ok
+/// or missed, and as no optical path is. Each has the bits that it has by itself, at any `level` as above.
+void follow_ghost_rays(const SpectralLens<double>& lens, const GhostPath& path, const StrayMirrors<double>& mirrors,
+                       FollowedRays& rays, std::optional<SimdLevel> level = std::nullopt);
 
 }  // namespace lensproof::optics

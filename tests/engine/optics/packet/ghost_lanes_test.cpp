@@ -63,6 +63,50 @@ Fates compare(const Lens& lens, const SpectralLens<double>& at, double steepest)
     return fates;
 }
 
+/// Rays as those of `compare`, past rims: what becomes of eight together is what becomes of each.
+Fates compare_followed(const Lens& lens, const SpectralLens<double>& at, double steepest) {
+    std::mt19937_64 random(6);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    const StrayMirrors<double> mirrors{.sensor = 0.3, .blades = 0.1};
+    const TraceLens<double>& first = at.at(0);
+    Fates fates;
+    for (const GhostPath& path : some_paths(static_cast<int>(lens.surfaces.size()))) {
+        for (int i = 0; i < 10; ++i) {
+            FollowedRays given;
+            for (TracedRay<double>& ray : given.ray) {
+                const double angle = steepest * unit(random);
+                const Vec3d direction = normalized(Vec3d{0.1 * unit(random), std::sin(angle), std::cos(angle)});
+                const double reach = 1.2 * lens.surfaces.front().semi_diameter;
+                ray.ray = {Vec3d{reach * unit(random), reach * unit(random), 0.0} - 40.0 * direction, direction};
+            }
+            for (const SimdLevel level : available_simd_levels()) {
+                FollowedRays together = given;
+                follow_ghost_rays(at, path, mirrors, together, level);
+                int arrived = 0;
+                for (std::size_t lane = 0; lane < kFollowedRays; ++lane) {
+                    WorstLimit worst;
+                    const TracedRay<double> alone = follow_limits(first, path, given.ray[lane].ray, mirrors,
+                                                                  [&](const GhostLimit& limit) { worst.meet(limit); });
+                    EXPECT_EQ(together.ray[lane].status == RayStatus::ok, gets_through(alone.status));
+                    EXPECT_EQ(together.worst[lane].others, worst.others) << simd_name(level);
+                    EXPECT_EQ(together.worst[lane].ratio_squared, worst.ratio_squared) << simd_name(level);
+                    if (gets_through(alone.status)) {
+                        EXPECT_EQ(together.ray[lane].ray.origin, alone.ray.origin) << simd_name(level);
+                        EXPECT_EQ(together.ray[lane].ray.direction, alone.ray.direction) << simd_name(level);
+                        EXPECT_EQ(together.ray[lane].transmittance, alone.transmittance) << simd_name(level);
+                        ++arrived;
+                    }
+                }
+                if (level == SimdLevel::scalar) {
+                    fates.arrived += arrived;
+                    fates.ended += static_cast<int>(kFollowedRays) - arrived;
+                }
+            }
+        }
+    }
+    return fates;
+}
+
 SpectralLens<double> at_three(const Lens& lens) {
     return at_wavelengths<double>(lens, {400.0, 550.0, 700.0});
 }
@@ -73,6 +117,7 @@ TEST(GhostLanes, HaveTheBitsOfTheScalar) {
         const Lens lens = formats::load_lens(name);
         const Fates fates = compare(lens, at_three(lens), name[0] == 'm' ? 1.5 : 0.5);
         EXPECT_GT(fates.arrived, 10) << name;
+        EXPECT_GT(compare_followed(lens, at_three(lens), name[0] == 'm' ? 1.5 : 0.5).arrived, 10) << name;
         seen = {seen.arrived + fates.arrived, seen.ended + fates.ended, seen.parted + fates.parted};
     }
     EXPECT_GT(seen.arrived, 300);
@@ -86,6 +131,7 @@ TEST(GhostLanes, PassWhateverSurfacesHave) {
         const SpectralLens<double> at = at_three(lens);
         ASSERT_FALSE(at.at(0).specials.empty());
         EXPECT_GT(compare(lens, at, 0.4).arrived, 75);
+        EXPECT_GT(compare_followed(lens, at, 0.4).arrived, 75);
     }
 }
 
@@ -103,6 +149,7 @@ TEST(GhostLanes, PassShapesAndGlassThatAbsorbs) {
     }
     at[1].attenuation.assign(lens.surfaces.size() + 1, 0.02);
     EXPECT_GT(compare(lens, SpectralLens<double>(at), 0.4).arrived, 75);
+    EXPECT_GT(compare_followed(lens, SpectralLens<double>({at[1]}), 0.4).arrived, 75);
 }
 
 }  // namespace lensproof::optics::ghost_lanes_test
