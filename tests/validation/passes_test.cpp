@@ -35,6 +35,21 @@ TEST(Passes, GhostsOfASunBesideThePictureAreAllThatChanceFinds) {
                       studio.by_pass("everything", 40000), 0.05);
 }
 
+// A wide sun that the lens sees in a mirror alone: camera paths find it, to which light paths come by chance.
+TEST(Passes, GhostsOfWhatAMirrorShowsAreAllThatChanceFinds) {
+    SceneParts parts(kGrid);
+    parts.add(scene::Quad{150.0, 150.0}, {.linear = about_x(225.0), .translation = {0.0, 0.0, 90.0}},
+              scene::Material{scene::ConductorMaterial{.n = spectral::constant_spectrum(0.1, kGrid),
+                                                       .k = spectral::constant_spectrum(4.0, kGrid),
+                                                       .roughness = {}}});
+    parts.lights.emplace_back(
+        scene::SunLight{normalized(Vec3d{0.15, 1.0, 0.1}), std::cos(0.1), spectral::constant_spectrum(10.0, kGrid)});
+    const Studio studio({.lens = "tessar", .f_number = 4.0, .sensor = kSensor, .grid = kGrid, .mirrors = kMirrors},
+                        parts);
+    const render::Film ghosts = studio.by_pass("ghosts", 20000);
+    expect_same_image(ghosts, studio.ghosts_by_light_paths(40000), 0.05);
+}
+
 // A barrel that scatters leaves the ghosts as they are and adds its own light: of mirrors and blades too.
 TEST(Passes, ASunsGhostsAndBarrelAreAllThatChanceFinds) {
     constexpr optics::WallFinish kGrey{.albedo = 0.6, .gloss = 0.5, .roughness = 0.3};

@@ -12,6 +12,7 @@
 #include "engine/render/integrators/energy_audit.h"
 #include "engine/render/integrators/passes.h"
 #include "engine/render/integrators/stray_paths.h"
+#include "engine/render/stray/ghost_entrance.h"
 #include "tests/validation/rendered_scene.h"
 #include "tests/validation/small_scene.h"
 
@@ -60,11 +61,10 @@ class Studio {
 
     /// All of what is left to chance inside the lens by light paths: the other way to what a pass makes from both ends.
     [[nodiscard]] render::Film by_light_paths(render::Ways ways, std::uint32_t samples) const {
-        render::Render render{.film = camera_.film(),
-                              .renderer = render::LightPaths(view_, render::WalkEntrance(camera_, ways), 1),
-                              .lands_anywhere = true};
-        render.film.has_splats = true;
-        return film_of(std::move(render), samples);
+        return by_entrance(render::WalkEntrance(camera_, ways), samples);
+    }
+    [[nodiscard]] render::Film ghosts_by_light_paths(std::uint32_t samples) const {
+        return by_entrance(render::GhostEntrance(camera_), samples);
     }
 
     [[nodiscard]] render::EnergyAudit audit(std::uint32_t paths) const { return render::energy_audit(view_, paths); }
@@ -73,6 +73,13 @@ class Studio {
     [[nodiscard]] const render::Camera& camera() const { return camera_; }
 
   private:
+    template <class Entrance>
+    [[nodiscard]] render::Film by_entrance(const Entrance& entrance, std::uint32_t samples) const {
+        render::Render render{
+            .film = camera_.film(), .renderer = render::LightPaths(view_, entrance, 1), .lands_anywhere = true};
+        render.film.has_splats = true;
+        return film_of(std::move(render), samples);
+    }
     [[nodiscard]] render::Film film_by(const char* integrator, std::uint32_t samples) const {
         return film_of(render::integrator_named(integrator).render(view_), samples);
     }

@@ -21,6 +21,8 @@ enum class LightPathsKept {
     beside_camera_paths,
     /// Those that come to the camera straight from a sun.
     of_suns,
+    /// All but those that come to it by a mirror or smooth glass, of which point lights' straight reflections alone.
+    beside_mirrored_camera_paths,
 };
 
 /// One light path: from each of its points it joins the camera, whose film it reaches as `entrance` draws.
@@ -54,7 +56,7 @@ class LightWalk {
             !(start.is_sun && settings_.leaves_suns_out)) {
             join_from_light(start);
         }
-        if (settings_.max_bounces > 0 && (kept_ == LightPathsKept::all || start.is_point())) {
+        if (settings_.max_bounces > 0 && (kept_ != LightPathsKept::beside_camera_paths || start.is_point())) {
             const auto onwards = numbers_.next();
             scatter(start, scene_.lights.leave(start, onwards[0], onwards[1]));
         }
@@ -79,7 +81,9 @@ class LightWalk {
             const auto hit = scene::intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++rays_;
             if constexpr (kIsMet) {
-                if (is_mirrored_) {
+                const bool is_others = kept_ == LightPathsKept::beside_mirrored_camera_paths &&
+                                       !(start.is_point() && is_mirrored_throughout_);
+                if (is_mirrored_ && !is_others) {
                     arrive(ray, hit ? hit->distance_mm : kInfinity, light.power * throughput);
                 }
             }
@@ -124,6 +128,7 @@ class LightWalk {
                 return;
             }
             is_mirrored_ = scattered.is_delta;
+            is_mirrored_throughout_ = is_mirrored_throughout_ && is_mirrored_;
             ray = vertex.ray(onwards);
         }
     }
@@ -246,6 +251,7 @@ class LightWalk {
     double pixel_m2_;
     bool is_hero_alone_ = false;
     bool is_mirrored_ = false;  // its last point sends light one way only
+    bool is_mirrored_throughout_ = true;
 };
 
 /// Renders a scene by light paths, one for each sample of each pixel, wherever it lands: the film's layout has splats.

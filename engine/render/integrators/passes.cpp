@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/base/input_error.h"
-#include "engine/render/integrators/stray_paths.h"
+#include "engine/render/integrators/ghost_paths.h"
 #include "engine/render/stray/diffracted_entrance.h"
 #include "engine/render/stray/ghost_entrance.h"
 #include "engine/render/stray/wave_entrance.h"
@@ -47,7 +48,10 @@ Render by_chance(const View& view, Ways ways, std::uint64_t salt) {
 }
 
 Render ghosts(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, GhostEntrance(*view.camera, view.guides_ghosts), 0x3c6ef372fe94f82bULL);
+    constexpr std::uint64_t kOfGhosts = 0x3c6ef372fe94f82bULL;
+    GhostEntrance entrance(*view.camera, view.guides_ghosts);
+    return has_mirrors(view.scene()) ? with_splats(view, GhostPaths(view, entrance, kOfGhosts))
+                                     : astray(view, std::move(entrance), kOfGhosts);
 }
 
 Render faint_ghosts(const View& view, const Integrator& /*integrator*/) {

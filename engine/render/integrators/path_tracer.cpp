@@ -54,6 +54,7 @@ class PathWalk {
     [[nodiscard]] const PathRadiance& result() const { return result_; }
 
   private:
+    [[nodiscard]] bool is_mirror_wanted() const { return bounce_ == 0 && settings_->begins_at_mirror; }
     [[nodiscard]] bool counts() const { return bounce_ >= settings_->min_bounces; }
 
     void leave_scene() {
@@ -90,14 +91,16 @@ class PathWalk {
         }
         if (!scene::is_delta(vertex.bsdf)) {
             start_->numbers.skip();
-            sample_light(vertex);
+            if (!is_mirror_wanted()) {
+                sample_light(vertex);
+            }
         }
         return turn(vertex);
     }
 
     bool turn(const PathVertex& vertex) {
         const auto turn = vertex.turn(numbers_, scene::Transport::radiance);
-        if (!turn) {
+        if (!turn || (is_mirror_wanted() && !turn->bsdf.is_delta)) {
             return false;
         }
         throughput_ *= turn->bsdf.weight;

@@ -8,12 +8,29 @@
 
 namespace lensproof::render {
 
+StrayFilm::StrayFilm(const Camera& camera)
+    : front_(camera), disc_(pupil::rear_disc(front_.middle(), front_.film_radius_mm())) {}
+
+StrayFilm::Start StrayFilm::start(Vec2d pixel, double image_z, const std::array<double, 4>& numbers) const {
+    const Camera& camera = front_.camera();
+    const PixelFilter& filter = camera.film().filter;
+    const PixelFilter::Draw across = filter.draw(numbers[0]);
+    const PixelFilter::Draw down = filter.draw(numbers[1]);
+    const Vec2d at = camera.sensor().position(pixel.x + across.offset_px, pixel.y + down.offset_px);
+    const Vec2d through = disc_.warped(numbers[2], numbers[3]);
+    const Vec3d film{at.x, at.y, image_z};
+    const Vec3d to_disc = Vec3d{through.x, through.y, disc_.plane_z} - film;
+    const double distance2 = dot(to_disc, to_disc);
+    const double cosine2 = to_disc.z * to_disc.z / distance2;
+    const double steradians = disc_.area() * cosine2 / distance2;  // the film's cosine and the disc's
+    return {.ray = {film, normalized(to_disc)}, .weight = across.weight * down.weight * steradians};
+}
+
 StrayCameraPaths::StrayCameraPaths(const View& view, Ways ways, std::uint64_t salt)
     : view_(view),
-      front_(*view.camera),
+      film_(*view.camera),
       ways_(ways),
       barrel_(std::make_shared<const optics::Barrel>(view.camera->lens().value())),
-      disc_(pupil::rear_disc(front_.middle(), front_.film_radius_mm())),
       // Another's than those of the light paths beside them.
       seed_(sampler_detail::mixed(~(view.seed ^ salt))) {
     view_.paths.min_bounces = 1;
@@ -24,28 +41,15 @@ void StrayCameraPaths::operator()(const TileSamples& samples, FilmTile& tile) co
     if (is_dark(ways_, *barrel_)) {
         return;
     }
-    const PixelRect& rect = samples.rect;
-    const spectral::SpectralGrid& grid = view_.camera->grid();
-    for (int y = rect.y; y < rect.y + rect.height; ++y) {
-        for (int x = rect.x; x < rect.x + rect.width; ++x) {
-            const auto pixel = static_cast<std::uint32_t>(y * view_.camera->sensor().width + x);
-            for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
-                PathSampler numbers(seed_, pixel, sample);
-                const spectral::PathWavelengths path = grid.path(static_cast<int>(numbers.next()[0] * grid.size()));
-                const float found = irradiance({static_cast<double>(x), static_cast<double>(y)}, path, numbers, tile);
-                if (found != 0.0F) {
-                    constexpr auto kWavelengths = static_cast<float>(spectral::kWavelengthsPerPath);
-                    tile.add(tile.pixel(x, y), sample, path.index, std::array{kWavelengths * found, 0.0F, 0.0F, 0.0F});
-                }
-            }
-        }
-    }
+    add_stray_samples(view_, seed_, samples, tile, [&](Vec2d pixel, const auto& path, PathSampler& numbers, auto& to) {
+        return irradiance(pixel, path, numbers, to);
+    });
 }
 
 double StrayCameraPaths::shining_on(const Ray<double>& dust, const spectral::PathWavelengths& path,
                                     PathSampler& numbers) const {
     const scene::Scene& scene = view_.scene();
-    const Ray<double> grain = front_.camera().to_world(dust);
+    const Ray<double> grain = film_.front().camera().to_world(dust);
     const auto u = numbers.next();
     const auto light = scene.lights.sample(grain.origin, path, u[0], u[1], u[2]);
     const double cosine = light ? dot(grain.direction, light->direction) : 0.0;
@@ -57,20 +61,12 @@ double StrayCameraPaths::shining_on(const Ray<double>& dust, const spectral::Pat
 
 float StrayCameraPaths::irradiance(Vec2d pixel, const spectral::PathWavelengths& path, PathSampler& numbers,
                                    FilmTile& tile) const {
-    const Camera& camera = front_.camera();
+    const Camera& camera = film_.front().camera();
     const auto place = numbers.next();
     const auto aim = numbers.next();
-    const PixelFilter& filter = camera.film().filter;
-    const PixelFilter::Draw across = filter.draw(place[0]);
-    const PixelFilter::Draw down = filter.draw(place[1]);
-    const Vec2d at = camera.sensor().position(pixel.x + across.offset_px, pixel.y + down.offset_px);
-
-    const optics::TraceLens<double>& lens = front_.lens().at(path.index[0]);
-    const Vec2d through = disc_.warped(aim[0], aim[1]);
-    const Vec3d film{at.x, at.y, lens.image_z};
-    const Vec3d to_disc = Vec3d{through.x, through.y, disc_.plane_z} - film;
-    const double distance2 = dot(to_disc, to_disc);
-    optics::StrayLight light{.ray = {film, normalized(to_disc)}};
+    const optics::TraceLens<double>& lens = film_.front().lens().at(path.index[0]);
+    const StrayFilm::Start start = film_.start(pixel, lens.image_z, {place[0], place[1], aim[0], aim[1]});
+    optics::StrayLight light{.ray = start.ray};
     WalkNumbers walk_numbers(aim);
     optics::StrayWalk walk(lens, *barrel_, camera.settings().mirrors, walk_numbers);
     tile.count_rays(1);
@@ -104,9 +100,7 @@ float StrayCameraPaths::irradiance(Vec2d pixel, const spectral::PathWavelengths&
     } else {
         end_at(end, light);
     }
-    const double cosine2 = to_disc.z * to_disc.z / distance2;
-    const double steradians = disc_.area() * cosine2 / distance2;  // the film's cosine and the disc's
-    return static_cast<float>(across.weight * down.weight * steradians * brought);
+    return static_cast<float>(start.weight * brought);
 }
 
 }  // namespace lensproof::render

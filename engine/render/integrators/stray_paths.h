@@ -9,6 +9,48 @@
 
 namespace lensproof::render {
 
+/// Where camera paths begin that go astray: film points of a pixel, and directions over the disc behind the lens.
+class StrayFilm {
+  public:
+    explicit StrayFilm(const Camera& camera);
+
+    struct Start {
+        Ray<double> ray;      // lens space, at the wavelength's image plane
+        double weight = 0.0;  // sr: over the pdf of the direction, cosine and filter weight included
+    };
+    /// By four numbers.
+    [[nodiscard]] Start start(Vec2d pixel, double image_z, const std::array<double, 4>& numbers) const;
+
+    [[nodiscard]] const CameraFront& front() const { return front_; }
+
+  private:
+    CameraFront front_;
+    pupil::RearDisc disc_;
+};
+
+/// Calls `irradiance(pixel, path, numbers, tile)` for each sample of a tile, a path of one wavelength each.
+template <class Irradiance>
+void add_stray_samples(const View& view, std::uint64_t seed, const TileSamples& samples, FilmTile& tile,
+                       const Irradiance& irradiance) {
+    const PixelRect& rect = samples.rect;
+    const spectral::SpectralGrid& grid = view.camera->grid();
+    for (int y = rect.y; y < rect.y + rect.height; ++y) {
+        for (int x = rect.x; x < rect.x + rect.width; ++x) {
+            const auto pixel = static_cast<std::uint32_t>(y * view.camera->sensor().width + x);
+            for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
+                PathSampler numbers(seed, pixel, sample);
+                const spectral::PathWavelengths path = grid.path(static_cast<int>(numbers.next()[0] * grid.size()));
+                const float found =
+                    irradiance(Vec2d{static_cast<double>(x), static_cast<double>(y)}, path, numbers, tile);
+                if (found != 0.0F) {
+                    constexpr auto kWavelengths = static_cast<float>(spectral::kWavelengthsPerPath);
+                    tile.add(tile.pixel(x, y), sample, path.index, std::array{kWavelengths * found, 0.0F, 0.0F, 0.0F});
+                }
+            }
+        }
+    }
+}
+
 /// Camera paths that go from the film to the front by chance (optics::StrayWalk), and on in the scene as those that
 /// image do (path_tracer.h): they see a sky, a room or a lit wall for all that it sends. Light that comes straight from
 /// a lamp or a sun is left to light paths, which aim at the front from one however small; but dust on the front is a
@@ -32,10 +74,9 @@ class StrayCameraPaths {
                                     PathSampler& numbers) const;
 
     View view_;
-    CameraFront front_;
+    StrayFilm film_;
     Ways ways_;
     std::shared_ptr<const optics::Barrel> barrel_;
-    pupil::RearDisc disc_;
     std::uint64_t seed_;
 };
 

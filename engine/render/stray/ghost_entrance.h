@@ -27,6 +27,9 @@ class GhostEntrance {
     [[nodiscard]] std::optional<Entry> meet(const Ray<double>& ray, const spectral::PathWavelengths& path,
                                             PathSampler& numbers) const;
 
+    /// All of them.
+    [[nodiscard]] const std::vector<optics::GhostPath>& ghosts() const { return guide_->paths(); }
+
   private:
     struct Way {  // that was drawn
         optics::GhostPath path;

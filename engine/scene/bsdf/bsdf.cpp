@@ -68,6 +68,15 @@ spectral::SpectralSample normal_albedo(const MixBsdf& bsdf) {
     return sum;
 }
 
+/// But of a mix.
+template <class Model>
+bool has_delta_of(const Model& bsdf) {
+    return is_delta(bsdf);
+}
+bool has_delta_of(const PlasticBsdf& bsdf) {
+    return bsdf.roughness.is_smooth();
+}
+
 }  // namespace
 
 spectral::SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
@@ -81,6 +90,15 @@ double pdf(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transpo
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
                                  Transport transport) {
     return std::visit([&](const auto& model) { return sample(model, wo, u_lobe, u1, u2, transport); }, bsdf);
+}
+
+bool has_delta(const Bsdf& bsdf) {
+    const auto of = [](const auto& model) { return has_delta_of(model); };
+    if (const auto* mix = std::get_if<MixBsdf>(&bsdf)) {
+        return std::any_of(mix->part.begin(), mix->part.begin() + static_cast<std::ptrdiff_t>(mix->count),
+                           [&](const auto& part) { return std::visit(of, part); });
+    }
+    return std::visit(of, bsdf);
 }
 
 bool is_delta(const Bsdf& bsdf) {

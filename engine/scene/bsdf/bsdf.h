@@ -31,6 +31,9 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lob
 /// Whether `evaluate` is 0 for every pair of directions: lights need not be sampled there.
 bool is_delta(const Bsdf& bsdf);
 
+/// Whether some of the light is scattered so.
+bool has_delta(const Bsdf& bsdf);
+
 /// The fraction of light from straight above that leaves the surface again, reflected or passed, as if facets lost
 /// nothing: the albedo layer that denoisers ask for.
 spectral::SpectralSample normal_albedo(const Bsdf& bsdf);
