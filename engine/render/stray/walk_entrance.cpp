@@ -63,10 +63,10 @@ Entry WalkEntrance::landed(Entry entry, const Ray<double>& ray, const spectral::
             if (places == 1 || numbers() * places < 1.0) {
                 entry.at_px[i] = front_.film_px(on_film.ray, lens);
                 kept = on_film.weight;
+                entry.is_by_dust[i] = on_film.dust_normal.has_value();
             }
         });
         entry.weight[i] = places * kept;
-        entry.is_by_dust[i] = light.dust_normal.has_value();
     }
     return entry;
 }
