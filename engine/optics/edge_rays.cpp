@@ -101,8 +101,8 @@ std::optional<DiffractedRay> diffracted(const StopPlane& stop, const EdgeZone& z
     if (!(numbers[1] < 1.0 - edge.distance / zone.width)) {
         return std::nullopt;
     }
-    DiffractedRay ray = diffracted_at_edge({edge.outward, stop.mask->edge_length() * stop.semi_diameter},
-                                           stop.wavenumber, direction, zone.deflections, {numbers[2], numbers[3]});
+    DiffractedRay ray = diffracted_at_edge({edge.outward, edge.length * stop.semi_diameter}, stop.wavenumber, direction,
+                                           zone.deflections, {numbers[2], numbers[3]});
     // The zone's strips grow narrower towards the inside of a curved edge.
     const double strip = 1.0 - edge.distance / edge.radius;
     ray.weight *= count * 2.0 / (zone.width * stop.semi_diameter) / strip;

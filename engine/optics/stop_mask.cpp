@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <numbers>
+#include <numeric>
 
 #include "engine/base/angle.h"
 #include "engine/base/bytes.h"
@@ -12,6 +15,32 @@
 #include "engine/base/input_error.h"
 
 namespace lensproof::optics {
+
+namespace {
+
+/// As `StopMask::edges_near`.
+std::vector<StopMask::NearEdge> pieces_near(const std::vector<EdgePiece>& pieces, const Vec2d& point, double width) {
+    std::vector<StopMask::NearEdge> edges;
+    for (const EdgePiece& piece : pieces) {
+        const double side = piece.piece_length();
+        const double share = dot(point - piece.from, piece.to - piece.from) / (side * side);
+        if (!(share >= 0.0 && share < 1.0)) {
+            continue;
+        }
+        const Vec2d outward = piece.outward(share);
+        const double distance = dot(piece.from + share * (piece.to - piece.from) - point, outward);
+        if (distance >= 0.0 && distance < width) {
+            const double turn = cross(piece.outward_from, piece.outward_to);
+            edges.push_back({.distance = distance,
+                             .outward = outward,
+                             .radius = turn != 0.0 ? side / turn : kInfinity,
+                             .length = piece.edge_length});
+        }
+    }
+    return edges;
+}
+
+}  // namespace
 
 StopMask::StopMask(const StopShape& shape) {
     if (const auto* polygon = std::get_if<PolygonStop>(&shape)) {
@@ -33,6 +62,9 @@ StopMask::StopMask(const StopShape& shape) {
             throw InputError(fmt::format("{}: the stop's picture was not read", textured->image));
         }
         texture_ = textured->texture;
+        if (auto pieces = texture_edges(*texture_)) {
+            pieces_ = std::make_shared<const std::vector<EdgePiece>>(*std::move(pieces));
+        }
     }
 }
 
@@ -47,12 +79,12 @@ double StopMask::half_chord() const {
 std::vector<StopMask::NearEdge> StopMask::edges_near(double x, double y, double width) const {
     std::vector<NearEdge> edges;
     if (texture_) {
-        return edges;
+        return pieces_ ? pieces_near(*pieces_, {x, y}, width) : edges;
     }
     if (edges_.empty()) {
         const double r = std::hypot(x, y);
         if (r > 0.0 && 1.0 - r < width) {
-            edges.push_back({1.0 - r, {x / r, y / r}, 1.0});
+            edges.push_back({1.0 - r, {x / r, y / r}, 1.0, kInfinity});
         }
         return edges;
     }
@@ -61,7 +93,7 @@ std::vector<StopMask::NearEdge> StopMask::edges_near(double x, double y, double 
         const double along = edge.x * x + edge.y * y - edge.centre;
         if (!(edge.radius_squared > 0.0)) {
             if (-along < width && std::abs(across) <= half_chord()) {
-                edges.push_back({-along, {edge.x, edge.y}, kInfinity});
+                edges.push_back({-along, {edge.x, edge.y}, kInfinity, edge_length()});
             }
             continue;
         }
@@ -70,47 +102,59 @@ std::vector<StopMask::NearEdge> StopMask::edges_near(double x, double y, double 
             std::abs(across) * edge.radius() <= half_chord() * from_centre) {
             const Vec2d outward{(edge.x * along - edge.y * across) / from_centre,
                                 (edge.y * along + edge.x * across) / from_centre};
-            edges.push_back({edge.radius() - from_centre, outward, edge.radius()});
+            edges.push_back({edge.radius() - from_centre, outward, edge.radius(), edge_length()});
         }
     }
     return edges;
 }
 
 StopMask::EdgePoint StopMask::edge_at(double share) const {
+    if (pieces_) {
+        const double along = share * perimeter();
+        const auto after = std::ranges::upper_bound(*pieces_, along, {}, &EdgePiece::before);
+        const EdgePiece& piece = *std::prev(after);
+        const double part = std::min((along - piece.before) / piece.piece_length(), 1.0);
+        return {piece.from + part * (piece.to - piece.from), piece.outward(part), piece.edge_length};
+    }
     if (edges_.empty()) {
         const Vec2d outward{std::cos(2.0 * std::numbers::pi * share), std::sin(2.0 * std::numbers::pi * share)};
-        return {outward, outward};
+        return {outward, outward, kInfinity};
     }
     const double at = share * static_cast<double>(edges_.size());
     const std::size_t index = std::min(edges_.size() - 1, static_cast<std::size_t>(at));
-    const double along_edge = 2.0 * (at - static_cast<double>(index)) - 1.0;
+    const double asideedge = 2.0 * (at - static_cast<double>(index)) - 1.0;
     const Edge& edge = edges_[index];
     const auto turned = [&](double along, double across) {
         return Vec2d{edge.x * along - edge.y * across, edge.y * along + edge.x * across};
     };
     if (!(edge.radius_squared > 0.0)) {
-        return {turned(edge.centre, along_edge * half_chord()), {edge.x, edge.y}};
+        return {turned(edge.centre, asideedge * half_chord()), {edge.x, edge.y}, edge_length()};
     }
-    const double angle = along_edge * std::asin(half_chord() / edge.radius());
+    const double angle = asideedge * std::asin(half_chord() / edge.radius());
     const double across = std::sin(angle);
     return {turned(edge.centre + edge.radius() * std::cos(angle), edge.radius() * across),
-            turned(std::cos(angle), across)};
+            turned(std::cos(angle), across), edge_length()};
 }
 
 double StopMask::edge_length() const {
-    if (edges_.empty()) {
-        return kInfinity;
-    }
     const Edge& any = edges_.front();  // they are alike
     const double h = half_chord();
     return any.radius_squared > 0.0 ? 2.0 * any.radius() * std::asin(h / any.radius()) : 2.0 * h;
 }
 
 double StopMask::perimeter() const {
+    if (pieces_) {
+        return pieces_->back().before + pieces_->back().piece_length();
+    }
     return edges_.empty() ? 2.0 * std::numbers::pi : static_cast<double>(edges_.size()) * edge_length();
 }
 
 double StopMask::area() const {
+    if (pieces_) {
+        return std::accumulate(pieces_->begin(), pieces_->end(), 0.0, [](double sum, const EdgePiece& piece) {
+            return sum + 0.5 * cross(piece.from, piece.to);  // the bright is on their left
+        });
+    }
     double area = edges_.empty() ? std::numbers::pi : 0.0;
     for (const Edge& edge : edges_) {
         const double h = half_chord();

@@ -8,6 +8,7 @@
 #include "engine/base/infinity.h"
 #include "engine/base/vec.h"
 #include "engine/optics/prescription.h"
+#include "engine/optics/texture_edges.h"
 
 namespace lensproof::optics {
 
@@ -93,30 +94,28 @@ class StopMask {
     struct NearEdge {
         double distance = 0.0;  // to its foot on the edge
         Vec2d outward;          // of unit length, from the point to the foot
-        double radius = 0.0;    // of the edge; infinite where it is straight
+        double radius = 0.0;    // of the edge; infinite where it is straight, negative where it bulges inwards
+        double length = 0.0;    // of the edge from corner to corner; infinite of what has no corners
     };
 
     /// The edges, of the circle too, that have their foot from a point of the opening between their ends and within
-    /// `width`: beside a corner two of them. None of a texture.
+    /// `width`: beside a corner two of them.
     [[nodiscard]] std::vector<NearEdge> edges_near(double x, double y, double width) const;
 
     /// A point of the edges, the circle's too, in units of the semi-diameter.
     struct EdgePoint {
         Vec2d point;
-        Vec2d outward;  // across the edge, of unit length
+        Vec2d outward;        // across the edge, of unit length
+        double length = 0.0;  // of the edge, as above
     };
 
-    /// The point at this share, 0 to 1, of the edges' length: even shares lie evenly along them. Not of a texture.
+    /// The point at this share, 0 to 1, of the edges' length: even shares lie evenly along them. Not without edges.
     [[nodiscard]] EdgePoint edge_at(double share) const;
 
-    /// Whether it has edges: a texture has none.
-    [[nodiscard]] bool has_edges() const { return !texture_; }
+    /// Whether it has edges: a soft texture has none (texture_edges.h).
+    [[nodiscard]] bool has_edges() const { return !texture_ || pieces_; }
 
-    /// The length of an edge from corner to corner, in units of the semi-diameter: infinite for the circle, which has
-    /// no corners. Not of a texture.
-    [[nodiscard]] double edge_length() const;
-
-    /// The edges' length and what they enclose, in units of the semi-diameter. Not of a texture.
+    /// The edges' length and what they enclose, in units of the semi-diameter. Not without edges.
     [[nodiscard]] double perimeter() const;
     [[nodiscard]] double area() const;
 
@@ -124,10 +123,13 @@ class StopMask {
     void append_to(std::string& bytes) const;
 
   private:
-    [[nodiscard]] double half_chord() const;  // of each edge
+    // Of a circle or blades.
+    [[nodiscard]] double half_chord() const;
+    [[nodiscard]] double edge_length() const;
 
     std::vector<Edge> edges_;
     std::shared_ptr<const ApertureTexture> texture_;
+    std::shared_ptr<const std::vector<EdgePiece>> pieces_;  // of its edges
 };
 
 }  // namespace lensproof::optics

@@ -14,10 +14,10 @@ DiffractedEntrance::DiffractedEntrance(const Camera& camera, const DiffractionSe
     const optics::Lens& lens = *camera.lens();
     mask_ = lens.stop_mask;
     if (!mask_.has_edges()) {
-        throw InputError(
-            fmt::format("{}: a stop that a picture describes has no edges to diffract light; expected a circle or "
-                        "blades",
-                        lens.name));
+        throw InputError(fmt::format(
+            "{}: the picture that describes its stop is too soft to have edges that diffract light; expected "
+            "one that goes from nine tenths of full brightness to one tenth within six texels",
+            lens.name));
     }
     if (!(settings.smallest_airy >= 1.0 && settings.smallest_airy <= 1000.0)) {
         throw InputError(fmt::format("diffraction from {} λN on, expected from 1 to 1000", settings.smallest_airy));
@@ -66,8 +66,8 @@ std::optional<Entry> DiffractedEntrance::draw(const LightOrigin& from, const spe
             continue;
         }
         const optics::DiffractedRay ray =
-            optics::diffracted_at_edge({edge.outward, mask_.edge_length() * semi_diameter_}, at.wavenumber,
-                                       aimed->direction, at.deflections, {u[1], u[2]});
+            optics::diffracted_at_edge({edge.outward, edge.length * semi_diameter_}, at.wavenumber, aimed->direction,
+                                       at.deflections, {u[1], u[2]});
         if (!first) {
             first = aimed;
             const Ray<double> world = front_.camera().to_world(aimed->front);

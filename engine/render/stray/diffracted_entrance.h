@@ -24,8 +24,8 @@ class DiffractedEntrance {
     static constexpr bool shows_points = true;  // spread light has a radiance
     using Entry = render::Entry;
 
-    /// Throws InputError for an ideal camera, for a stop with a picture, which has no edges, or on a face of glass, and
-    /// for settings that make no sense.
+    /// Throws InputError for an ideal camera, for a stop with a picture too soft to have edges, or on a face of glass,
+    /// and for settings that make no sense.
     explicit DiffractedEntrance(const Camera& camera, const DiffractionSettings& settings = {});
 
     [[nodiscard]] std::optional<Entry> draw(const LightOrigin& from, const spectral::PathWavelengths& path,

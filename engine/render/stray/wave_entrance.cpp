@@ -66,6 +66,12 @@ WaveEntrance::WaveEntrance(const Camera& camera, const std::vector<scene::SunLig
                            const DiffractionSettings& settings)
     : camera_(&camera),
       far_edges_(camera, {.smallest_airy = WaveImage::kReachAiry, .zone_width = settings.zone_width}) {
+    if (!camera.lens()->stop_mask.opening().texture.empty()) {
+        throw InputError(
+            fmt::format("{}: a picture describes its stop, whose wave is not known; expected a circle or "
+                        "blades: suns are imaged by rays, without the pass \"waves\"",
+                        camera.lens()->name));
+    }
     const auto wavelengths = static_cast<std::size_t>(camera.grid().size());
     for (const scene::SunLight& sun : suns) {
         std::vector<std::optional<Image>> found(wavelengths);

@@ -23,8 +23,8 @@ class WaveEntrance {
     static constexpr double kWidestDiscDeg = 1.0;  // the Sun and the Moon have half of it
     using Entry = render::Entry;
 
-    /// Throws InputError as DiffractedEntrance and WaveImage do, for a wider disc, and for a sun from where no ray
-    /// comes through the middle of the stop. The camera outlives it.
+    /// Throws InputError as DiffractedEntrance and WaveImage do, for a stop with a picture, for a wider disc, and for a
+    /// sun from where no ray comes through the middle of the stop. The camera outlives it.
     WaveEntrance(const Camera& camera, const std::vector<scene::SunLight>& suns, const DiffractionSettings& settings);
 
     [[nodiscard]] std::optional<Entry> draw(const LightOrigin& from, const spectral::PathWavelengths& path,
