@@ -62,10 +62,17 @@ StopMask::StopMask(const StopShape& shape) {
             throw InputError(fmt::format("{}: the stop's picture was not read", textured->image));
         }
         texture_ = textured->texture;
+    }
+}
+
+StopMask StopMask::with_edges() const {
+    StopMask mask = *this;
+    if (texture_) {
         if (auto pieces = texture_edges(*texture_)) {
-            pieces_ = std::make_shared<const std::vector<EdgePiece>>(*std::move(pieces));
+            mask.pieces_ = std::make_shared<const std::vector<EdgePiece>>(*std::move(pieces));
         }
     }
+    return mask;
 }
 
 double StopOpening::Edge::radius() const {

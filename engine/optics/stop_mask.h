@@ -112,7 +112,10 @@ class StopMask {
     /// The point at this share, 0 to 1, of the edges' length: even shares lie evenly along them. Not without edges.
     [[nodiscard]] EdgePoint edge_at(double share) const;
 
-    /// Whether it has edges: a soft texture has none (texture_edges.h).
+    /// The same mask, which knows the edges of its texture too: they are looked for (texture_edges.h).
+    [[nodiscard]] StopMask with_edges() const;
+
+    /// Whether it knows edges: a soft texture has none.
     [[nodiscard]] bool has_edges() const { return !texture_ || pieces_; }
 
     /// The edges' length and what they enclose, in units of the semi-diameter. Not without edges.

@@ -33,7 +33,9 @@ class Lattice {
         if (column < 0 || row < 0 || column >= columns() || row >= rows()) {
             return 0.0;
         }
-        const double texels_inside = semi_diameter_ - length(at(column, row));
+        const Vec2d point = at(column, row);
+        const double texels_inside =
+            dot(point, point) < (semi_diameter_ - 1.0) * (semi_diameter_ - 1.0) ? 1.0 : semi_diameter_ - length(point);
         const auto place = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns());
         return std::clamp(texels_inside + kHalf, 0.0, 1.0) * texture_.values[place + static_cast<std::size_t>(column)];
     }
@@ -60,12 +62,15 @@ using Contour = std::vector<Vec2d>;
 class Crossings {
   public:
     explicit Crossings(const Lattice& lattice) : lattice_(lattice) {
-        for (int row = -1; row < lattice.rows(); ++row) {
+        for (int row = -1; row < lattice.rows() && !are_too_many(); ++row) {
             for (int column = -1; column < lattice.columns(); ++column) {
                 cross_cell(column, row);
             }
         }
     }
+
+    /// As of noise, which has no edges: not all were then looked for. (Blades of 4096 texels across have 20,000.)
+    [[nodiscard]] bool are_too_many() const { return next_.size() > 100'000; }
 
     [[nodiscard]] std::vector<Contour> contours() {
         std::vector<Contour> found;
@@ -134,21 +139,26 @@ double distance_to(const Vec2d& point, const Vec2d& from, const Vec2d& to) {
     return length(point - from - share * side);
 }
 
-/// Marks the corners of a polygon between two that are marked.
-void mark_corners(const Contour& contour, std::size_t first, std::size_t last, std::vector<bool>& is_corner) {
-    std::size_t farthest = first;
-    double most = kTolerance;
-    for (std::size_t i = first + 1; i < last; ++i) {
-        const double distance = distance_to(contour[i], contour[first], contour[last % contour.size()]);
-        if (distance > most) {
-            most = distance;
-            farthest = i;
+/// Marks the corners of a polygon between two that are known.
+void mark_corners(const Contour& contour, std::size_t begin, std::size_t end, std::vector<bool>& is_corner) {
+    std::vector<std::array<std::size_t, 2>> left{{begin, end}};
+    while (!left.empty()) {
+        const auto [first, last] = left.back();
+        left.pop_back();
+        std::size_t farthest = first;
+        double most = kTolerance;
+        for (std::size_t i = first + 1; i < last; ++i) {
+            const double distance = distance_to(contour[i], contour[first], contour[last % contour.size()]);
+            if (distance > most) {
+                most = distance;
+                farthest = i;
+            }
         }
-    }
-    if (farthest != first) {
-        is_corner[farthest] = true;
-        mark_corners(contour, first, farthest, is_corner);
-        mark_corners(contour, farthest, last, is_corner);
+        if (farthest != first) {
+            is_corner[farthest] = true;
+            left.push_back({first, farthest});
+            left.push_back({farthest, last});
+        }
     }
 }
 
@@ -268,7 +278,11 @@ std::optional<std::vector<EdgePiece>> texture_edges(const ApertureTexture& textu
     const double shortest_straight = 4.0 * std::sqrt(lattice.semi_diameter());
     std::vector<EdgePiece> pieces;
     double before = 0.0;
-    for (const Contour& contour : Crossings(lattice).contours()) {
+    Crossings crossings(lattice);
+    if (crossings.are_too_many()) {
+        return std::nullopt;
+    }
+    for (const Contour& contour : crossings.contours()) {
         const std::vector<Side> sides = sides_of(contour, shortest_straight);
         for (std::size_t i = 0; i < sides.size(); ++i) {
             const Side& side = sides[i];

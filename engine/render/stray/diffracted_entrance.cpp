@@ -12,7 +12,7 @@ namespace lensproof::render {
 DiffractedEntrance::DiffractedEntrance(const Camera& camera, const DiffractionSettings& settings)
     : front_(camera), zone_width_(settings.zone_width) {
     const optics::Lens& lens = *camera.lens();
-    mask_ = lens.stop_mask;
+    mask_ = lens.stop_mask.with_edges();
     if (!mask_.has_edges()) {
         throw InputError(fmt::format(
             "{}: the picture that describes its stop is too soft to have edges that diffract light; expected "

@@ -31,7 +31,8 @@ ApertureTexture picture(int columns, int rows, const Open& open) {
 }
 
 StopMask mask_of(const ApertureTexture& texture) {
-    return StopMask(StopShape{TexturedStop{.image = "", .texture = std::make_shared<const ApertureTexture>(texture)}});
+    const TexturedStop shape{.image = "", .texture = std::make_shared<const ApertureTexture>(texture)};
+    return StopMask(StopShape{shape}).with_edges();
 }
 
 // Six blades, 10° turned: six straight edges with their normals to a tenth of a degree and their length to a texel.
@@ -95,6 +96,11 @@ TEST(TextureEdges, OfSoftOrDarkPicturesAreNone) {
     EXPECT_FALSE(texture_edges(soft));
     EXPECT_FALSE(texture_edges({.size_x = 8, .size_y = 8, .values = std::vector<float>(64, 0.0F)}));
     EXPECT_FALSE(texture_edges({.size_x = 1, .size_y = 1, .values = {1.0F}}));
+    ApertureTexture noise{.size_x = 64, .size_y = 64, .values = {}};
+    for (unsigned i = 0; i < 64 * 64; ++i) {
+        noise.values.push_back(static_cast<float>((i * 2654435761U) >> 31U));
+    }
+    EXPECT_FALSE(texture_edges(noise));
     // Open everywhere: the circle's own.
     constexpr std::size_t kTexels = 64;
     const auto open =
