@@ -216,6 +216,40 @@ TEST(LensExposure, DustTakesWhatItCovers) {
     EXPECT_TRUE(says(message(kDoubleGauss + "\ndust = { albedo = 0.5 }"), "picture"));
 }
 
+// White grains that send all light on lose none: under an even sky the film has from them what it has from the glass
+// that they cover, since what glass under a grain sends back goes out through it, and there is as much sky there.
+// (Coated, so that ghosts, which take the same ways in, add less than a percent of a percent for each pair of
+// surfaces.)
+TEST(LensExposure, WhiteDustUnderAnEvenSkyChangesNothing) {
+    const TestFolder folder;
+    formats::Image haze = formats::make_image(1, 1, {"Y"});
+    haze.pixels = {0.4F};
+    formats::write_exr(haze, folder.path() / "haze.exr");
+    const std::string picture = (folder.path() / "haze.exr").string();
+    render::PreparedScene scene(
+        setup_of(fmt::format("{}\ncoating = \"broadband\"\ndust = {{ picture = \"{}\", albedo = 1, through = 1 }}",
+                             kDoubleGauss, picture),
+                 ""),
+        {}, {});
+    const render::PixelRect middle{210, 0, 1, 1};
+    const auto light = [&](const std::vector<std::string>& passes, std::uint32_t samples) {
+        std::vector<double> seeds;
+        for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+            double sum = 0.0;
+            for (const render::Render& render : scene.render(passes, seed, false)) {
+                sum += rendered(render, {&middle, 1}, samples).estimate(210, 0).rgb.y;
+            }
+            seeds.push_back(sum);
+        }
+        return mean_of(seeds);
+    };
+    const Measured clean = light({"imaged", "direct"}, 4096);  // less by two fifths
+    const Measured dust = light({"barrel"}, 40000);
+    fmt::print("{:.5g} ± {:.2g} of {:.5g}\n", dust.value / clean.value, dust.error / clean.value, 0.4 / 0.6);
+    EXPECT_NEAR(dust.value / clean.value, 0.4 / 0.6, 4.0 * dust.error / clean.value);
+    EXPECT_LT(dust.error, 0.01 * dust.value);
+}
+
 // Through a pinhole the same plane falls off as cos⁴θ. Through a thin lens it does as a disc of radius a seen from the
 // film at the distance s does (Foote, Bull. Bur. Standards 12, 1915): E = π L / 2 · (1 − (1 + tan²θ − tan²α) /
 // √(tan⁴θ + 2 tan²θ (1 − tan²α) + 1 / cos⁴α)), tan α = a / s.

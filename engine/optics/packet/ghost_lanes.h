@@ -29,15 +29,15 @@ GhostLanes trace_ghost_lanes(const SpectralLens<double>& lens, std::span<const s
 
 inline constexpr std::size_t kFollowedRays = 8;
 
-/// Rays that are followed past rims: as they enter the lens, and what becomes of each.
+/// Rays along a ghost past rims: as they enter the lens, and what becomes of each.
 struct FollowedRays {
-    std::array<TracedRay<double>, kFollowedRays>
-        ray;                                      // of those that do not get through the status alone means anything
+    std::array<TracedRay<double>, kFollowedRays> ray;
     std::array<WorstLimit, kFollowedRays> worst;  // of all limits that it has met
 };
 
-/// `trace_ghost` with Rims::follow at the lens's first wavelength, for rays that have their `ray` set; the status is ok
-/// or missed, and as no optical path is. Each has the bits that it has by itself, at any `level` as above.
+/// `trace_ghost` with Rims::follow at the lens's first wavelength. Given is the `ray` of each; status, which is ok or
+/// missed, and, where it is ok, ray and transmittance come back, with the bits that each has by itself at any `level`
+/// as above.
 void follow_ghost_rays(const SpectralLens<double>& lens, const GhostPath& path, const StrayMirrors<double>& mirrors,
                        FollowedRays& rays, std::optional<SimdLevel> level = std::nullopt);
 

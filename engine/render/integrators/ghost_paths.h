@@ -8,7 +8,8 @@
 
 namespace lensproof::render {
 
-/// Whether some surface sends light one way only: then light paths find the camera by chance.
+/// Whether some material, in the middle of its textures, sends light one way only: then light paths find the camera by
+/// chance.
 bool has_mirrors(const scene::Scene& scene);
 
 /// Camera paths that go from the film along a ghost out of the front, and on in the scene, if a mirror or smooth glass

@@ -7,6 +7,7 @@
 
 #include "engine/base/infinity.h"
 #include "engine/render/integrators/mis_weight.h"
+#include "engine/render/integrators/pixel_paths.h"
 #include "engine/render/integrators/view.h"
 #include "engine/render/stray/entry.h"
 
@@ -268,20 +269,12 @@ class LightPaths {
           kept_(kept) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile) const {
-        const PixelRect& rect = samples.rect;
-        const spectral::SpectralGrid& grid = view_.camera->grid();
-        for (int y = rect.y; y < rect.y + rect.height; ++y) {
-            for (int x = rect.x; x < rect.x + rect.width; ++x) {
-                const auto pixel = static_cast<std::uint32_t>(y * view_.camera->sensor().width + x);
-                for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
-                    PathSampler numbers(seed_, pixel, sample);
-                    const spectral::PathWavelengths strata =
-                        grid.path(static_cast<int>(numbers.next()[0] * grid.size()));
-                    tile.begin_light_path();
-                    tile.count_rays(LightWalk(view_, *entrance_, strata, numbers, tile, kept_).walk());
-                }
-            }
-        }
+        for_each_path(view_, seed_, samples,
+                      [&](int /*x*/, int /*y*/, std::uint32_t /*sample*/, const spectral::PathWavelengths& path,
+                          PathSampler& numbers) {
+                          tile.begin_light_path();
+                          tile.count_rays(LightWalk(view_, *entrance_, path, numbers, tile, kept_).walk());
+                      });
     }
 
   private:

@@ -1,5 +1,6 @@
 // engine/render/integrators/stray_paths.h — light that is left to chance inside the lens, from both ends.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -32,23 +33,16 @@ class StrayFilm {
 template <class Irradiance>
 void add_stray_samples(const View& view, std::uint64_t seed, const TileSamples& samples, FilmTile& tile,
                        const Irradiance& irradiance) {
-    const PixelRect& rect = samples.rect;
-    const spectral::SpectralGrid& grid = view.camera->grid();
-    for (int y = rect.y; y < rect.y + rect.height; ++y) {
-        for (int x = rect.x; x < rect.x + rect.width; ++x) {
-            const auto pixel = static_cast<std::uint32_t>(y * view.camera->sensor().width + x);
-            for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
-                PathSampler numbers(seed, pixel, sample);
-                const spectral::PathWavelengths path = grid.path(static_cast<int>(numbers.next()[0] * grid.size()));
-                const float found =
-                    irradiance(Vec2d{static_cast<double>(x), static_cast<double>(y)}, path, numbers, tile);
-                if (found != 0.0F) {
-                    constexpr auto kWavelengths = static_cast<float>(spectral::kWavelengthsPerPath);
-                    tile.add(tile.pixel(x, y), sample, path.index, std::array{kWavelengths * found, 0.0F, 0.0F, 0.0F});
-                }
+    for_each_path(
+        view, seed, samples,
+        [&](int x, int y, std::uint32_t sample, const spectral::PathWavelengths& path, PathSampler& numbers) {
+            const Vec2d pixel{static_cast<double>(x), static_cast<double>(y)};
+            const float found = irradiance(pixel, path, numbers, tile);
+            if (found != 0.0F) {
+                constexpr auto kWavelengths = static_cast<float>(spectral::kWavelengthsPerPath);
+                tile.add(tile.pixel(x, y), sample, path.index, std::array{kWavelengths * found, 0.0F, 0.0F, 0.0F});
             }
-        }
-    }
+        });
 }
 
 /// Camera paths that go from the film to the front by chance (optics::StrayWalk), and on in the scene as those that

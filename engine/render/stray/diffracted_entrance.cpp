@@ -6,6 +6,7 @@
 
 #include "engine/base/angle.h"
 #include "engine/base/input_error.h"
+#include "engine/spectral/wavelengths.h"
 
 namespace lensproof::render {
 
@@ -36,7 +37,7 @@ DiffractedEntrance::DiffractedEntrance(const Camera& camera, const DiffractionSe
         const optics::StopAim aim(at, lens.stop_index());
         semi_diameter_ = aim.semi_diameter();
         // λN on the film is λ / 2a at the stop, by the Lagrange invariant.
-        const double wavelength = kMmPerNm * camera.grid().strata.midpoints()[i] / aim.index();
+        const double wavelength = spectral::kMmPerNm * camera.grid().strata.midpoints()[i] / aim.index();
         at_.push_back({.aim = aim,
                        .wavenumber = 2.0 * kPi / wavelength,
                        .deflections = {.smallest = settings.smallest_airy * wavelength / (2.0 * semi_diameter_),

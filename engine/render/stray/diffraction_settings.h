@@ -3,8 +3,6 @@
 
 namespace lensproof::render {
 
-inline constexpr double kMmPerNm = 1e-6;
-
 struct DiffractionSettings {
     /// Deflections on the film, in λN, from which light counts as diffracted; at least 1. The default is the radius of
     /// Airy's first dark ring (Born & Wolf, Principles of Optics, 7th ed., §8.5.2): the core of the image is left to

@@ -10,6 +10,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
 #include "engine/optics/stop_aim.h"
+#include "engine/spectral/wavelengths.h"
 
 namespace lensproof::render {
 
@@ -51,7 +52,7 @@ class ChiefRays {
         const optics::TracedRay<double> traced = aim_.onwards(rim, aimed->direction);
         const double aperture = std::abs(traced.ray.direction.x) / kNearRim;
         return traced.status == optics::RayStatus::ok && aperture > 0.0
-                   ? std::optional(kMmPerNm * wavelength_nm / (2.0 * aperture))
+                   ? std::optional(spectral::kMmPerNm * wavelength_nm / (2.0 * aperture))
                    : std::nullopt;
     }
 

@@ -11,8 +11,8 @@
 namespace lensproof::render {
 
 /// The point spread function of a lens for light from one direction at one wavelength, from the exit pupil's amplitude
-/// and phase (analysis::fft_psf), as far as `reach_mm` from where the chief ray lands; drawn from. It is even over
-/// cells of an FFT's pixels.
+/// and phase (analysis::fft_psf), within `kReachAiry` of where the chief ray lands; drawn from. It is even over the
+/// FFT's pixels.
 class WaveImage {
   public:
     /// How far: in λN, which the stop's rim on the axis tells. An FFT's window is eight times as wide, so that what it
@@ -46,7 +46,7 @@ class WaveImage {
     void integrate_light(const analysis::PolychromaticField& field, const std::optional<optics::FrontDust>& dust);
     void spread(const analysis::Psf& psf);
 
-    static constexpr int kPixelsPerAiry = 2;  // twice as many as the beam on the axis needs
+    static constexpr int kPixelsPerAiry = 2;  // as many as the beam on the axis needs (FftPsfSettings)
     static constexpr int kReach = static_cast<int>(kReachAiry) * kPixelsPerAiry;  // pixels
     static constexpr int kSize = 2 * kReach;                                      // pixels along each side
     static constexpr int kFft = 8 * kReach;

@@ -236,40 +236,30 @@ Shares exchanged(const Lens& lens, double film_radius, bool forward, int rays) {
     return shares;
 }
 
-// Light goes both ways alike, in each of its classes: through coated and bare glass, blades, edges, steps of the tube
-// and a sensor that is a mirror.
-TEST(StrayWalk, EveryClassIsTheSameBothWays) {
-    const Lens lens = stepped_lens({.tube = {.albedo = 0.6, .gloss = 0.5, .roughness = 0.3},
-                                    .edges = {.albedo = 0.8},
-                                    .blades = {.albedo = 0.5, .gloss = 1.0, .roughness = 0.2}});
-    const Shares there = exchanged(lens, 6.0, true, 200'000);
-    const Shares back = exchanged(lens, 6.0, false, 200'000);
+void expect_alike(const Shares& there, const Shares& back) {
     for (const auto& [name, one, other] : {std::tuple{"image", there.image, back.image},
                                            {"ghosts", there.ghosts, back.ghosts},
-                                           {"barrel", there.barrel, back.barrel}}) {
+                                           {"walls and dust", there.barrel, back.barrel}}) {
         SCOPED_TRACE(name);
         EXPECT_NEAR(one.mean(), other.mean(), 4.0 * std::hypot(one.error(), other.error()));
         EXPECT_LT(one.error(), 0.05 * one.mean());
     }
 }
 
-// Dust as well, whose light the glass under it sends back in part; and where walls are black, all of the barrel's class
-// is dust's. The image is less by what is covered.
+// Light goes both ways alike, in each of its classes: through coated and bare glass, blades, edges, steps of the tube
+// and a sensor that is a mirror.
+TEST(StrayWalk, EveryClassIsTheSameBothWays) {
+    const Lens lens = stepped_lens({.tube = {.albedo = 0.6, .gloss = 0.5, .roughness = 0.3},
+                                    .edges = {.albedo = 0.8},
+                                    .blades = {.albedo = 0.5, .gloss = 1.0, .roughness = 0.2}});
+    expect_alike(exchanged(lens, 6.0, true, 200'000), exchanged(lens, 6.0, false, 200'000));
+}
+
+// Dust as well, whose light the glass under it sends back in part: between black walls all of their class is dust's.
 TEST(StrayWalk, DustIsTheSameBothWays) {
     Lens lens = stepped_lens({});
-    const Shares clean = exchanged(lens, 6.0, true, 200'000);
     lens.dust = dust(0.9, 0.7);
-    const Shares there = exchanged(lens, 6.0, true, 400'000);
-    const Shares back = exchanged(lens, 6.0, false, 400'000);
-    for (const auto& [name, one, other] : {std::tuple{"image", there.image, back.image},
-                                           {"ghosts", there.ghosts, back.ghosts},
-                                           {"dust", there.barrel, back.barrel}}) {
-        SCOPED_TRACE(name);
-        EXPECT_LT(one.error(), 0.05 * one.mean());
-        EXPECT_LT(other.error(), 0.05 * other.mean());
-    }
-    EXPECT_LT(there.image.mean(), 0.75 * clean.image.mean());
-    EXPECT_GT(there.image.mean(), 0.55 * clean.image.mean());
+    expect_alike(exchanged(lens, 6.0, true, 400'000), exchanged(lens, 6.0, false, 400'000));
 }
 
 // White walls and clear glass: what enters lands or leaves, all of it, be there dust that absorbs nothing or none.
