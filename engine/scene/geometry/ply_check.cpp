@@ -69,12 +69,12 @@ class PlyCheck {
     }
 
     int size_of(std::string_view type) const {
-        static const std::map<std::string_view, int> kSizes = {
+        static const std::map<std::string_view, int> kBytes = {
             {"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},  {"short", 2}, {"ushort", 2},
             {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},   {"int32", 4}, {"uint32", 4},
             {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
-        const auto found = kSizes.find(type);
-        if (found == kSizes.end()) {
+        const auto found = kBytes.find(type);
+        if (found == kBytes.end()) {
             refuse(fmt::format("its header has a property of type '{}'", printable(type)));
         }
         return found->second;
