@@ -25,7 +25,7 @@ optics::PolarisedPowers<double> coated_powers(const CoatedFace& face, double wav
         throw InputError(fmt::format("{} nm is outside the range of {}, {} to {} nm", wavelength_nm, face.glass.name,
                                      face.glass.min_wavelength_nm, face.glass.max_wavelength_nm));
     }
-    return optics::coating_powers(optics::coating_at(face.coating, wavelength_nm, "the coating"), 1.0,
+    return optics::coating_powers(optics::coating_at(face.coating, wavelength_nm, face.where), 1.0,
                                   optics::refractive_index(face.glass.formula, wavelength_nm),
                                   std::cos(radians(angle_deg)), from == FaceSide::air);
 }

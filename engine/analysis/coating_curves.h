@@ -1,5 +1,6 @@
 // engine/analysis/coating_curves.h — what a coating on glass reflects, for lists and plots.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "engine/base/vec.h"
@@ -11,6 +12,7 @@ namespace lensproof::analysis {
 struct CoatedFace {
     optics::LensCoating coating;
     optics::Glass glass;
+    std::string where;  // the coating is stated
 };
 
 /// For light from air or from the glass, at an angle below 90° in the medium that it comes from. Throws InputError

@@ -7,6 +7,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/render/integrators/chart_tracer.h"
+#include "engine/render/stray/lights_in_lens.h"
 #include "engine/scene/scene_build.h"
 
 namespace lensproof::render {
@@ -31,6 +32,8 @@ World PreparedScene::make_world() {
         return even_chart(setup_.chart->chart, setup_.chart->placement, setup_.chart->luminance_cd_m2, camera_);
     }
     scene::BuiltScene built = scene::build_scene(setup_.scene, camera_.grid(), cache_);
+    light_places_ = std::move(built.light_places);
+    refuse_lights_in_lens(camera_, built.scene.lights, light_places_, integrators_.has_splats());
     remarks_ = std::move(built.remarks);
     return std::move(built.scene);
 }
@@ -54,6 +57,9 @@ std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes
     straight.guides_ghosts = guides_ghosts;
     if (std::ranges::any_of(passes, [](const std::string& name) { return !pass_named(name).goes_straight; })) {
         straight.stray_camera = &stray_camera();
+        if (const auto* scene = std::get_if<scene::Scene>(&world_)) {
+            refuse_lights_in_lens(*straight.stray_camera, scene->lights, light_places_, true);
+        }
     }
     return renders_of(passes, straight, integrators_);
 }

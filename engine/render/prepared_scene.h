@@ -30,7 +30,8 @@ class PreparedScene {
 
     [[nodiscard]] Render render(std::uint64_t seed, bool has_features) const;
     /// What passes have of that, by their names (renders_of): light goes astray in the lens itself, whatever model of
-    /// it makes the image. Throws InputError where the camera has no such light, and as `Camera` does.
+    /// it makes the image. Throws InputError where the camera has no such light, for a light that is nearer to the lens
+    /// than such light is drawn (refuse_lights_in_lens), and as `Camera` does.
     [[nodiscard]] std::vector<Render> render(const std::vector<std::string>& passes, std::uint64_t seed,
                                              bool has_features, bool guides_ghosts = true);
 
@@ -63,6 +64,7 @@ class PreparedScene {
     Camera camera_;
     std::optional<Camera> stray_camera_;  // where it is another, once a pass has asked for it
     std::vector<std::string> remarks_;
+    std::vector<std::string> light_places_;  // as BuiltScene has them
     World world_;
 };
 

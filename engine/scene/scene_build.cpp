@@ -52,6 +52,7 @@ class SceneBuilder {
                                    .materials = std::move(materials_),
                                    .absorption = std::move(absorption_),
                                    .lights = {}},
+                         .light_places = std::move(light_places_),
                          .remarks = std::move(remarks_)};
         built.scene.lights = Lights(*built.scene.geometry, std::move(lights_));
         const auto& repaired = built.scene.geometry->remarks();
@@ -114,6 +115,7 @@ class SceneBuilder {
             if (std::optional<AreaLight> light = materials.light(own.material, own.mesh->cd_m2_per_unit, spectra_)) {
                 light->object = object;
                 lights_.emplace_back(*std::move(light));
+                light_places_.push_back(file.string());
             }
         }
     }
@@ -147,6 +149,7 @@ class SceneBuilder {
                                    return add_black_ball(centre_mm, radius_mm);
                                }};
         lights_.push_back(make_light(description, maker));
+        light_places_.push_back(description.where);
         const auto* area = std::get_if<AreaLight>(&lights_.back());
         if (area != nullptr && !shining_objects_.insert(area->object).second) {
             throw InputError("the object shines already, by another light of the file; expected one light an object");
@@ -162,6 +165,7 @@ class SceneBuilder {
     std::vector<Material> materials_;
     std::vector<std::optional<spectral::GridSpectrum>> absorption_;  // a material each
     std::vector<LightSource> lights_;
+    std::vector<std::string> light_places_;
     std::set<std::uint32_t> shining_objects_;
     std::vector<std::string> remarks_;
 };

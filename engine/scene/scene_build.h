@@ -10,9 +10,11 @@
 
 namespace lensproof::scene {
 
-/// A scene, and what was repaired or left out on the way to it, a sentence each.
+/// A scene, where the scene file states each of its lights (or which mesh's file does), and what was repaired or left
+/// out on the way to it, a sentence each.
 struct BuiltScene {
     Scene scene;
+    std::vector<std::string> light_places;
     std::vector<std::string> remarks;
 };
 

@@ -189,13 +189,14 @@ int run_coatings(const CoatingsOptions& options) {
     }
     const optics::GlassCatalogue catalogue = read_glass_catalogues(options.glass_catalogues);
     const optics::Glass air = optics::constant_glass("air", 1.0);
-    const analysis::CoatedFace bare{.coating = {}, .glass = find_glass(options, catalogue)};
+    const analysis::CoatedFace bare{.coating = {}, .glass = find_glass(options, catalogue), .where = "(bare)"};
     const std::string& glass_name = bare.glass.name;
     std::vector<Looked> coatings;
     for (const std::string& name : options.names.empty() ? formats::shipped_coating_names() : options.names) {
         Looked coating{.stated = find_coating(name), .face = bare};
+        coating.face.where = coating.stated.file.string();
         coating.face.coating =
-            optics::resolved_coating(coating.stated.coating, catalogue, air, bare.glass, coating.stated.file.string());
+            optics::resolved_coating(coating.stated.coating, catalogue, air, bare.glass, coating.face.where);
         coatings.push_back(std::move(coating));
     }
     Json list = Json::list();

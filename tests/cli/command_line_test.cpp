@@ -105,6 +105,9 @@ TEST(Coatings, AreListedWithWhatTheyReflect) {
     }
     EXPECT_EQ(names, (std::vector<std::string>{"broadband", "mgf2", "quarter-half-quarter", "v-coat"}));
     EXPECT_TRUE(says(place.run({"coatings"}).out, "assumed"));
+    place.file(
+        "short.toml",
+        "name = \"short\"\nsource = \"me\"\nlayers = [{ n = [[500, 1.38], [600, 1.37]], thickness_nm = 100 }]\n");
     place.file("own.toml", "name = \"own\"\nsource = \"me\"\nlayers = [{ n = 1.38, quarter_wave_nm = 550.0 }]\n");
     const Json own = place.json({"coatings", "own.toml", "mgf2", "--on", "SF6", "--plots", "plots"});
     ASSERT_EQ(own["coatings"].size(), 2U);
@@ -115,7 +118,8 @@ TEST(Coatings, AreListedWithWhatTheyReflect) {
     }
     for (const auto& [arguments, words] :
          {std::pair{std::vector<std::string>{"coatings", "mgf3"}, "did you mean \"mgf2\"?"},
-          {{"coatings", "--on", "GLAS"}, "--on GLAS"}}) {
+          {{"coatings", "--on", "GLAS"}, "--on GLAS"},
+          {{"coatings", "short.toml"}, "short.toml: 400 nm is outside the range of a coating's layer"}}) {
         const Outcome refused = place.run(arguments);
         EXPECT_EQ(refused.status, 2);
         EXPECT_TRUE(says(refused.err, words));

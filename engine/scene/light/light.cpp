@@ -36,17 +36,24 @@ std::optional<LightSample> sample_point(const LightAtPoint auto& light, const Ve
         .leaving_per_sample = 1.0 / (light.cone_sr() * distance2)};
 }
 
-/// The mean of a few points of a surface, and the squared distance of the farthest from it.
-std::pair<Vec3d, double> middle_of(const SurfaceSampler& surface) {
+std::vector<Vec3d> points_over(const SurfaceSampler& surface) {
     constexpr int kSide = 4;
     std::vector<Vec3d> points;
     points.reserve(std::size_t{kSide} * kSide);
-    Vec3d middle;
     for (int row = 0; row < kSide; ++row) {
         for (int column = 0; column < kSide; ++column) {
             points.push_back(surface.sample((column + 0.5) / kSide, (row + 0.5) / kSide).point);
-            middle = middle + (1.0 / (kSide * kSide)) * points.back();
         }
+    }
+    return points;
+}
+
+/// The mean of a few points of a surface, and the squared distance of the farthest from it.
+std::pair<Vec3d, double> middle_of(const SurfaceSampler& surface) {
+    const std::vector<Vec3d> points = points_over(surface);
+    Vec3d middle;
+    for (const Vec3d& point : points) {
+        middle = middle + (1.0 / static_cast<double>(points.size())) * point;
     }
     double farthest2 = 0.0;
     for (const Vec3d& point : points) {
@@ -246,6 +253,14 @@ std::vector<SunLight> Lights::suns() const {
         suns.push_back(std::get<SunLight>(lights_[sun].light));
     }
     return suns;
+}
+
+std::vector<Vec3d> Lights::points_of(std::size_t i) const {
+    const Entry& entry = lights_[i];
+    if (entry.surface) {
+        return points_over(entry.surface->sampler());
+    }
+    return entry.middle ? std::vector{*entry.middle} : std::vector<Vec3d>{};
 }
 
 LightStart Lights::start_at(const Chosen& chosen, const spectral::PathWavelengths& path, double u1, double u2) const {

@@ -113,6 +113,8 @@ class Lights {
     [[nodiscard]] LightStart start_at_sun(const spectral::PathWavelengths& path, double u_light, double u1,
                                           double u2) const;
     [[nodiscard]] std::vector<SunLight> suns() const;
+    /// Points of the i-th light: its own, or sixteen spread over its surface. None of one at infinity.
+    [[nodiscard]] std::vector<Vec3d> points_of(std::size_t i) const;
 
     /// What a start that is not at infinity sends in a direction: W·sr⁻¹·nm⁻¹.
     [[nodiscard]] spectral::SpectralSample intensity(const LightStart& start, const Vec3d& direction) const;

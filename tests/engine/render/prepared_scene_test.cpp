@@ -17,8 +17,8 @@ namespace lensproof::render::prepared_scene_test {
 namespace {
 
 /// A sun beside the picture and nothing else: all that reaches the film has gone astray. `camera`, `render`: lines of
-/// these tables.
-SceneSetup under_a_sun(const std::string& camera, const std::string& render = {}) {
+/// these tables; `more`: of what there is besides.
+SceneSetup under_a_sun(const std::string& camera, const std::string& render = {}, const std::string& more = {}) {
     return parse_scene_setup(camera + R"(
 f_number = 5.6
 focus_distance_mm = inf
@@ -36,7 +36,7 @@ strata_per_layer = 1
 kind = "sun"
 direction = [-0.3, 0.6, 1.0]
 illuminance_lx = 1e5
-)",
+)" + more,
                              "sun.toml");
 }
 
@@ -126,6 +126,42 @@ TEST(PreparedScene, WhatIsDiffractedIsMissingInAnyModelsImage) {
     // Of a circle 2/(π² x) are beyond x λN (DiffractedLight.LeavesTheRestToTheImage).
     EXPECT_NEAR(straight_share("", "diffracted_from_airy = 5.0\n"), 1.0 - 2.0 / (kPi * kPi * 5.0), 1e-12);
     EXPECT_EQ(straight_share("model = \"thin-lens\"\n"), exact);
+}
+
+// A light where the lens is would shine through glass and blades as if they were not there. One just in front of the
+// first surface is seen, but no light path begins there.
+TEST(PreparedScene, RefusesLightsInTheLens) {
+    const auto complaint = [](const std::string& light, const std::vector<std::string>& passes = {"imaged"}) {
+        const SceneSetup setup = under_a_sun("[camera]\nlens = \"tessar\"\n", {}, light + R"(
+[[objects]]
+name = "panel"
+shape = "quad"
+size_mm = [4, 4]
+translate_mm = [0, 3, -30]
+material = "black"
+[[materials]]
+name = "black"
+kind = "diffuse"
+reflectance = 0
+)");
+        return complaint_about(
+            [&] { static_cast<void>(PreparedScene(setup, PixelFilter{}, Cache()).render(passes, 1, false, false)); });
+    };
+    const std::string lamp = "[[lights]]\nkind = \"point\"\nintensity_cd = 1\nposition_mm = ";
+    EXPECT_TRUE(says(complaint(lamp + "[1, 2, -20]\n"), "lights[2]: shines from inside the lens, from 20 mm"));
+    EXPECT_TRUE(says(
+        complaint("[[lights]]\nkind = \"sphere\"\nradius_mm = 2\nluminance_cd_m2 = 1\nposition_mm = [0, 0, -90]\n"),
+        "inside the lens"));
+    EXPECT_TRUE(
+        says(complaint("[[lights]]\nkind = \"area\"\nobject = \"panel\"\nluminance_cd_m2 = 1\n"), "inside the lens"));
+    // Beside the lens, in front of it, and a dome about it.
+    EXPECT_EQ(complaint(lamp + "[60, 0, -20]\n", {"imaged", "ghosts"}), "");
+    EXPECT_EQ(complaint(lamp + "[0, 0, 40]\n", {"imaged", "ghosts"}), "");
+    EXPECT_EQ(
+        complaint("[[lights]]\nkind = \"sphere\"\nradius_mm = 500\nluminance_cd_m2 = 1\nposition_mm = [0, 0, -90]\n"),
+        "");
+    EXPECT_EQ(complaint(lamp + "[0, 0, 5]\n"), "");
+    EXPECT_TRUE(says(complaint(lamp + "[0, 0, 5]\n", {"imaged", "ghosts"}), "5 mm in front of the lens"));
 }
 
 /// A wall before the Tessar.
