@@ -12,8 +12,8 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kOutlierSigmas = 4.5;
-constexpr double kLeastSigma_px = 0.005;  // no detector is better
+constexpr double kPairOutlierSigmas = 4.5;
+constexpr double kLeastShiftSigma_px = 0.005;  // no detector is better
 constexpr int kUnknowns = 7;
 constexpr std::size_t kFewestPairs = 7;
 
@@ -87,7 +87,7 @@ ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, cons
                      (pair.green_px.y - centre_px.y) / half_diagonal_px};
     };
     const LinearProblem problem = problem_of(pairs, offset);
-    const auto fit = fit_linear(problem, kOutlierSigmas, kLeastSigma_px);
+    const auto fit = fit_linear(problem, kPairOutlierSigmas, kLeastShiftSigma_px);
     if (!fit) {
         throw InputError("chromatic shift: the " + std::to_string(pairs.size()) +
                          " points do not determine it: expected points at several distances from the centre");

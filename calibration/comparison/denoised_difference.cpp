@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kTones = 16;
 constexpr double kWindow_px = 2.0;
-constexpr double kThreshold = 2.0;  // standard deviations
-constexpr double kMaskNorm = 6.0;   // root of the sum of the mask's squares
+constexpr double kThreshold = 2.0;      // standard deviations
+constexpr double kNoiseMaskNorm = 6.0;  // root of the sum of the mask's squares
 
 cv::Mat matrix_of(formats::Image& image) {
     return {image.height, image.width, CV_32F, image.pixels.data()};
@@ -60,8 +60,9 @@ std::array<double, kTones> noise_by_tone(formats::Image& difference, const forma
     }
     std::array<double, kTones> noise{};
     for (std::size_t tone = 0; tone < kTones; ++tone) {
-        noise[tone] =
-            responses[tone].empty() ? 0.0 : kSigmaPerMedian / kMaskNorm * static_cast<double>(median(responses[tone]));
+        noise[tone] = responses[tone].empty()
+                          ? 0.0
+                          : kSigmaPerMedian / kNoiseMaskNorm * static_cast<double>(median(responses[tone]));
     }
     return noise;
 }

@@ -19,12 +19,12 @@ namespace {
 constexpr int kSmallestSide_px = 32;
 constexpr double kMostPixelsToChoose = 2e6;
 constexpr int kMostSteps = 20;
-constexpr double kSettled_px = 1e-4;
+constexpr double kWarpSettled_px = 1e-4;
 constexpr double kLeastOverlap = 0.05;
 constexpr int kBlurReach_px = 4;
 
 /// What a level's fit came to.
-struct Fitted {
+struct FittedLevel {
     Warp warp;
     bool is_determined = false;
     WarpStep step;  // the last, at which nothing moves any more
@@ -39,10 +39,10 @@ double share_of(const std::vector<WarpTile>& tiles, const formats::Image& image)
     return pixels / (static_cast<double>(image.width) * image.height);
 }
 
-Fitted fitted(const WarpLevel& level, const Warp& start, WarpModel model, int threads) {
+FittedLevel fitted(const WarpLevel& level, const Warp& start, WarpModel model, int threads) {
     const SplineSurface surface(level.b, 0, threads);
     const WarpPair pair{.a = level.a, .b = surface, .margin_px = kBlurReach_px};
-    Fitted result{.warp = start};
+    FittedLevel result{.warp = start};
     for (int i = 0; i < kMostSteps; ++i) {
         result.tiles = warp_tiles(pair, result.warp, threads);
         result.step = warp_step(result.tiles, model);
@@ -52,7 +52,7 @@ Fitted fitted(const WarpLevel& level, const Warp& start, WarpModel model, int th
         }
         const Warp small = small_warp(result.step.terms);
         result.warp = composed(result.warp, small);
-        if (farthest_move_px(small, level.a.width, level.a.height) < kSettled_px) {
+        if (farthest_move_px(small, level.a.width, level.a.height) < kWarpSettled_px) {
             break;
         }
     }
@@ -60,15 +60,15 @@ Fitted fitted(const WarpLevel& level, const Warp& start, WarpModel model, int th
 }
 
 /// The same with as many terms as the level tells; the start where it tells none.
-Fitted best_at(const WarpLevel& level, const Warp& start, WarpModel model, int threads) {
-    Fitted shifted = fitted(level, start, WarpModel::translation, threads);
-    Fitted all = model == WarpModel::translation
-                     ? shifted
-                     : fitted(level, shifted.is_determined ? shifted.warp : start, model, threads);
+FittedLevel best_at(const WarpLevel& level, const Warp& start, WarpModel model, int threads) {
+    FittedLevel shifted = fitted(level, start, WarpModel::translation, threads);
+    FittedLevel all = model == WarpModel::translation
+                          ? shifted
+                          : fitted(level, shifted.is_determined ? shifted.warp : start, model, threads);
     if (all.is_determined) {
         return all;
     }
-    return shifted.is_determined ? shifted : Fitted{.warp = start};
+    return shifted.is_determined ? shifted : FittedLevel{.warp = start};
 }
 
 /// Least squares of a model's terms over what tiles say of the whole displacement, and χ².
@@ -106,14 +106,14 @@ TermFit fit_terms(const std::vector<TileShift>& tiles, const Warp& warp, const F
     return fit;
 }
 
-struct Choice {
+struct ChosenWarp {
     WarpModel model = WarpModel::none;
     Warp start;
 };
 
 /// By Schwarz's criterion; of few tiles only simple models.
-Choice choose(const std::vector<TileShift>& tiles, const Warp& warp, const FrameScale& frame) {
-    Choice best;
+ChosenWarp choose(const std::vector<TileShift>& tiles, const Warp& warp, const FrameScale& frame) {
+    ChosenWarp best;
     const auto n = static_cast<double>(2 * tiles.size());
     double least = std::numeric_limits<double>::infinity();
     for (const WarpModel model :
@@ -132,7 +132,7 @@ Choice choose(const std::vector<TileShift>& tiles, const Warp& warp, const Frame
     return best;
 }
 
-std::vector<WarpParameter> parameters_of(const Fitted& fit, WarpModel model, const FrameScale& frame) {
+std::vector<WarpParameter> parameters_of(const FittedLevel& fit, WarpModel model, const FrameScale& frame) {
     const auto values = warp_parameters(fit.warp, frame);
     const int terms = term_count(model);
     Eigen::MatrixXd slopes(terms, terms);
@@ -157,8 +157,8 @@ std::vector<WarpParameter> parameters_of(const Fitted& fit, WarpModel model, con
 }
 
 /// From a model and a warp near by to the whole resolution.
-Fitted refined(const std::vector<WarpLevel>& levels, std::size_t from, const Choice& choice, int threads) {
-    Fitted fit{.warp = choice.start};
+FittedLevel refined(const std::vector<WarpLevel>& levels, std::size_t from, const ChosenWarp& choice, int threads) {
+    FittedLevel fit{.warp = choice.start};
     for (std::size_t i = from + 1; i-- > 0;) {
         fit = fitted(levels[i], fit.warp, choice.model, threads);
         if (!fit.is_determined) {
@@ -188,10 +188,10 @@ Registration register_pictures(const formats::Image& a, const formats::Image& b,
     const bool turns = !wanted || *wanted > WarpModel::translation;
     const WarpModel way = turns ? WarpModel::similarity : WarpModel::translation;
     const WarpStarts starts = warp_starts(levels, turns, threads);
-    Fitted coarse;
+    FittedLevel coarse;
     result.correlation = -1.0;
     for (const Warp& start : starts.warps) {
-        const Fitted from_there = best_at(levels[starts.level], start, way, threads);
+        const FittedLevel from_there = best_at(levels[starts.level], start, way, threads);
         const double correlation = detail_correlation(levels[starts.level], from_there.warp, threads);
         if (correlation > result.correlation) {
             result.correlation = correlation;
@@ -212,7 +212,7 @@ Registration register_pictures(const formats::Image& a, const formats::Image& b,
     }
     result.likeness = Likeness::alike;
     const WarpLevel& chosen_at = levels[choosing];
-    Choice choice =
+    ChosenWarp choice =
         choose(tile_shifts(coarse.tiles, coarse.step.contrast, FrameScale(chosen_at.a.width, chosen_at.a.height)),
                coarse.warp, FrameScale(chosen_at.a.width, chosen_at.a.height));
     result.reason = "by Schwarz's criterion";
@@ -220,7 +220,7 @@ Registration register_pictures(const formats::Image& a, const formats::Image& b,
         choice = {.model = *wanted, .start = coarse.warp};
         result.reason = "as asked for";
     }
-    Fitted fit = refined(levels, choosing, choice, threads);
+    FittedLevel fit = refined(levels, choosing, choice, threads);
     if (!wanted && choice.model != WarpModel::none && fit.is_determined &&
         farthest_move_px(fit.warp, a.width, a.height) < kLeastMove_px) {
         result.reason = fmt::format("a {} would move no corner by {} px", warp_model_name(choice.model), kLeastMove_px);

@@ -9,10 +9,10 @@ namespace lensproof::calibration {
 namespace {
 
 const double kPole = std::sqrt(3.0) - 2.0;
-constexpr int kReach = 30;   // |pole|³⁰ is 7e-18
-constexpr int kNear = 1;     // coefficients before the first pixel
-constexpr int kMargin = 3;   // of them on both sides together
-constexpr int kStrip = 256;  // columns that are filtered together
+constexpr int kPoleReach = 30;    // |pole|³⁰ is 7e-18
+constexpr int kNear = 1;          // coefficients before the first pixel
+constexpr int kSplineMargin = 3;  // of them on both sides together
+constexpr int kStrip = 256;       // columns that are filtered together
 
 /// Samples mirrored about the first and the last.
 int mirrored(int i, int count) {
@@ -34,7 +34,7 @@ void to_coefficients(int count, int lines, const At& at) {
     std::vector<double> state(static_cast<std::size_t>(lines), 0.0);
     // The causal sum's start over mirrored samples.
     double power = 1.0;
-    for (int k = 0; k < kReach; ++k, power *= kPole) {
+    for (int k = 0; k < kPoleReach; ++k, power *= kPole) {
         for (int line = 0; line < lines; ++line) {
             state[static_cast<std::size_t>(line)] += power * static_cast<double>(at(mirrored(k, count), line));
         }
@@ -69,8 +69,8 @@ void to_coefficients(int count, int lines, const At& at) {
 SplineSurface::SplineSurface(const formats::Image& image, int channel, int threads)
     : width_(image.width),
       height_(image.height),
-      stride_(static_cast<std::size_t>(image.width + kMargin)),
-      coefficients_(stride_ * static_cast<std::size_t>(image.height + kMargin)) {
+      stride_(static_cast<std::size_t>(image.width + kSplineMargin)),
+      coefficients_(stride_ * static_cast<std::size_t>(image.height + kSplineMargin)) {
     const auto place = [this](int x, int y) {
         return static_cast<std::size_t>(y + kNear) * stride_ + static_cast<std::size_t>(x + kNear);
     };
@@ -85,9 +85,9 @@ SplineSurface::SplineSurface(const formats::Image& image, int channel, int threa
         to_coefficients(height_, std::min(kStrip, width_ - first),
                         [&](int y, int line) -> float& { return coefficients_[place(first + line, y)]; });
     });
-    parallel_for(height_ + kMargin, threads, [&](int row) {
+    parallel_for(height_ + kSplineMargin, threads, [&](int row) {
         const int y = mirrored(row - kNear, height_);
-        for (int x = -kNear; x < width_ + kMargin - kNear; ++x) {
+        for (int x = -kNear; x < width_ + kSplineMargin - kNear; ++x) {
             if (const int from = mirrored(x, width_); from != x || y != row - kNear) {
                 coefficients_[place(x, row - kNear)] = coefficients_[place(from, y)];
             }

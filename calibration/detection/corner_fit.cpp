@@ -22,7 +22,7 @@ constexpr double kGuardBlurs = 2.0;  // standard deviations; 2 % of a marker's b
 constexpr double kMostGuard = 0.5;   // of the white between edge and marker
 constexpr double kSmallestBlur_px = 0.25;
 constexpr int kFewestInWindow = 24;  // twice the unknowns
-constexpr int kMostSteps = 40;
+constexpr int kMostCornerSteps = 40;
 constexpr double kBlurReach = 4.0;  // standard deviations of the plane's blur
 
 enum Parameter {
@@ -49,22 +49,22 @@ struct Pixel {
 };
 
 /// A step, or a line, across one direction: its value at a distance, and the derivatives by distance and blur.
-struct Profile {
+struct StepProfile {
     double value = 0.0;
     double slope = 0.0;
     double by_blur = 0.0;
 };
 
-Profile step_at(double distance, double blur) {
+StepProfile step_at(double distance, double blur) {
     const double scale = 1.0 / (std::numbers::sqrt2 * blur);
     const double u = distance * scale;
     const double slope = 2.0 * std::numbers::inv_sqrtpi * std::exp(-u * u) * scale;
     return {.value = std::erf(u), .slope = slope, .by_blur = -slope * distance / blur};
 }
 
-Profile line_at(double distance, double width, double blur) {
-    const Profile left = step_at(distance + 0.5 * width, blur);
-    const Profile right = step_at(distance - 0.5 * width, blur);
+StepProfile line_at(double distance, double width, double blur) {
+    const StepProfile left = step_at(distance + 0.5 * width, blur);
+    const StepProfile right = step_at(distance - 0.5 * width, blur);
     return {.value = 1.0 - 0.5 * (left.value - right.value),
             .slope = -0.5 * (left.slope - right.slope),
             .by_blur = -0.5 * (left.by_blur - right.by_blur)};
@@ -85,7 +85,7 @@ Edge edge_at(double dx, double dy, double angle, double curvature, double blur, 
     const double s = std::sin(angle);
     const double along = c * dx + s * dy;
     const double from = c * dy - s * dx + curvature * along * along;
-    const Profile profile = line_px > 0.0 ? line_at(from, line_px, blur) : step_at(from, blur);
+    const StepProfile profile = line_px > 0.0 ? line_at(from, line_px, blur) : step_at(from, blur);
     const double bend = 2.0 * curvature * along;
     return {.value = profile.value,
             .by_x = profile.slope * (s - bend * c),
@@ -122,14 +122,14 @@ double residual(const Pixel& pixel, const Parameters& p, const LineWidths& width
     return p[kLevel] + p[kSlopeX] * dx + p[kSlopeY] * dy + b * first.value * second.value - pixel.light;
 }
 
-struct Sums {
+struct NormalSums {
     Normal normal = Normal::Zero();
     Parameters right = Parameters::Zero();
     double squares = 0.0;
 };
 
-Sums sums_at(const std::vector<Pixel>& pixels, const Parameters& p, const LineWidths& widths) {
-    Sums sums;
+NormalSums sums_at(const std::vector<Pixel>& pixels, const Parameters& p, const LineWidths& widths) {
+    NormalSums sums;
     Parameters gradient;
     for (const Pixel& pixel : pixels) {
         const double difference = residual(pixel, p, widths, gradient);
@@ -212,9 +212,9 @@ void start_light(const std::vector<Pixel>& pixels, const LineWidths& widths, Par
 /// Least squares from `p`; whether it settled.
 bool descend(const std::vector<Pixel>& pixels, const LineWidths& widths, int free_count, double largest_blur,
              Parameters& p, double& squares) {
-    Sums sums = sums_at(pixels, p, widths);
+    NormalSums sums = sums_at(pixels, p, widths);
     double damping = 1e-3;
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMostCornerSteps; ++step) {
         Normal damped = sums.normal;
         damped.diagonal() *= 1.0 + damping;
         Parameters change = Parameters::Zero();
@@ -222,7 +222,7 @@ bool descend(const std::vector<Pixel>& pixels, const LineWidths& widths, int fre
             damped.topLeftCorner(free_count, free_count).ldlt().solve(sums.right.head(free_count));
         Parameters next = p + change;
         next[kBlur] = std::clamp(next[kBlur], kSmallestBlur_px, largest_blur);
-        const Sums tried = next.allFinite() ? sums_at(pixels, next, widths) : Sums{.squares = sums.squares};
+        const NormalSums tried = next.allFinite() ? sums_at(pixels, next, widths) : NormalSums{.squares = sums.squares};
         const bool is_small = change.head(kAngle1).norm() < 1e-6;
         if (tried.squares < sums.squares) {
             p = next;

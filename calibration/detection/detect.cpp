@@ -25,7 +25,7 @@ namespace {
 using Points = std::vector<cv::Point2f>;
 using Finder = std::function<bool(const cv::Mat&, Points&)>;
 
-constexpr int kSmallestSide_px = 16;
+constexpr int kSmallestPicture_px = 16;
 constexpr double kSearchSide_px = 1600.0;  // larger pictures are searched at this size: corners lie well within a pixel
 
 std::string size_in_words(cv::Size size) {
@@ -307,7 +307,7 @@ Detection detect(const formats::Image& image, const scene::Chart& chart) {
         throw InputError("a " + scene::kind_name(chart) + " with " + size_in_words({grid.columns, grid.rows}) +
                          " points cannot be searched for: expected at least 3 × 3");
     }
-    if (image.width < kSmallestSide_px || image.height < kSmallestSide_px || image.channel_count() == 0) {
+    if (image.width < kSmallestPicture_px || image.height < kSmallestPicture_px || image.channel_count() == 0) {
         return not_found("the picture is too small: " + size_in_words({image.width, image.height}) + " pixels");
     }
     const cv::Mat full = detector_copy(image);

@@ -11,13 +11,13 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kRamp_px = 2.0;        // over which a piece's ends fade, on either side
-constexpr int kPieces = 3;              // of a line between two crossings
-constexpr double kCrossing = 0.2;       // of the distance between crossings, on either side, where the other line is
-constexpr double kBlurReach_px = 4.0;   // beyond the line
-constexpr double kPaper_px = 4.0;       // beyond that, for the ground
-constexpr double kMostReach = 0.4;      // of a pitch, to either side
-constexpr double kLeastDarkness = 0.2;  // of the light missing where the line is black
+constexpr double kRamp_px = 2.0;           // over which a piece's ends fade, on either side
+constexpr int kPieces = 3;                 // of a line between two crossings
+constexpr double kCrossing = 0.2;          // of the distance between crossings, on either side, where the other line is
+constexpr double kLineBlurReach_px = 4.0;  // beyond the line
+constexpr double kPaper_px = 4.0;          // beyond that, for the ground
+constexpr double kMostReach = 0.4;         // of a pitch, to either side
+constexpr double kLeastDarkness = 0.2;     // of the light missing where the line is black
 constexpr double kShortest_px = 12.0;
 constexpr double kLargestOff_px = 2.0;
 constexpr int kProfileRounds = 3;
@@ -73,12 +73,12 @@ struct Across {
 };
 
 std::optional<Across> centroid_across(const formats::Image& image, int channel, const Piece& piece) {
-    using Row = Eigen::Vector3d;
+    using PlaneRow = Eigen::Vector3d;
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Row right = Row::Zero();
+    PlaneRow right = PlaneRow::Zero();
     const bool is_seen = each(image, channel, piece, [&](double t, double s, double light) {
         if (std::abs(s) > piece.inner) {
-            const Row row(1.0, t, s);
+            const PlaneRow row(1.0, t, s);
             normal += row * row.transpose();
             right += light * row;
         }
@@ -87,7 +87,7 @@ std::optional<Across> centroid_across(const formats::Image& image, int channel, 
     if (!is_seen || normal(0, 0) < kShortest_px || !(solver.rcond() > 1e-9)) {
         return std::nullopt;
     }
-    const Row paper = solver.solve(right);
+    const PlaneRow paper = solver.solve(right);
     // The window ends softly, so that the pixels' grid does not show through.
     const auto fraction_at = [&](double t, double s) {
         return smooth_end((piece.half_length - std::abs(t)) / kRamp_px) * smooth_end(piece.inner - std::abs(s));
@@ -95,7 +95,7 @@ std::optional<Across> centroid_across(const formats::Image& image, int channel, 
     double mass = 0.0;
     double moment = 0.0;
     each(image, channel, piece, [&](double t, double s, double light) {
-        const double missing = fraction_at(t, s) * (paper.dot(Row(1.0, t, s)) - light);
+        const double missing = fraction_at(t, s) * (paper.dot(PlaneRow(1.0, t, s)) - light);
         mass += missing;
         moment += missing * s;
     });
@@ -105,11 +105,11 @@ std::optional<Across> centroid_across(const formats::Image& image, int channel, 
     }
     Across result{.off = moment / mass};
     double squares = 0.0;
-    Row by_paper = Row::Zero();
+    PlaneRow by_paper = PlaneRow::Zero();
     each(image, channel, piece, [&](double t, double s, double /*light*/) {
         const double weight = fraction_at(t, s) * (s - result.off) / mass;
         squares += weight * weight;
-        by_paper += weight * Row(1.0, t, s);
+        by_paper += weight * PlaneRow(1.0, t, s);
     });
     result.standard_error = std::sqrt(squares + by_paper.dot(solver.solve(by_paper)));
     return result;
@@ -163,7 +163,7 @@ std::vector<LinePoints> line_points(const formats::Image& image, int channel, co
             const double length = std::hypot(to->x - from->x, to->y - from->y);
             // Perspective squeezes the pitch across the line otherwise than along it; half is safe.
             const double width = length * lines->line_mm / lines->pitch_mm;
-            const double inner = 0.5 * width + kBlurReach_px;
+            const double inner = 0.5 * width + kLineBlurReach_px;
             Piece piece{.middle = {},
                         .along = {(to->x - from->x) / length, (to->y - from->y) / length},
                         .half_length = 0.5 * (1.0 - 2.0 * kCrossing) / kPieces * length,

@@ -14,8 +14,8 @@ constexpr int kFarthest_px = 40;         // looked at around a point; more pixel
 constexpr double kMedianOfAbs = 0.6745;  // of a normal distribution, in standard deviations
 constexpr double kMaskNorm = 6.0;        // root of the sum of the mask's squares
 constexpr std::size_t kFewestSteps = 25;
-constexpr double kMostStep = 7.0;   // of the noise: five standard deviations of a difference; more is an edge
-constexpr double kFullScale = 1.0;  // integer formats end there
+constexpr double kMostStep = 7.0;          // of the noise: five standard deviations of a difference; more is an edge
+constexpr double kIntegerFullScale = 1.0;  // integer formats end there
 
 struct Region {
     int x0;
@@ -40,7 +40,7 @@ std::optional<double> response(const formats::Image& image, int channel, const R
             const double laplacian = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1) -
                                      2.0 * (at(0, -1) + at(-1, 0) + at(1, 0) + at(0, 1)) + 4.0 * at(0, 0);
             const double step = std::hypot(at(1, 0) - at(-1, 0), at(0, 1) - at(0, -1));
-            if (std::isfinite(laplacian) && at(0, 0) < kFullScale && step <= most_step) {
+            if (std::isfinite(laplacian) && at(0, 0) < kIntegerFullScale && step <= most_step) {
                 responses.push_back(std::abs(laplacian));
             }
         }

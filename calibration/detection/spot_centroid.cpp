@@ -11,7 +11,7 @@ constexpr int kRounds = 6;
 constexpr double kMostFraction = 1.5;  // of a dark spot; a bright one may outshine its ground by any factor
 constexpr double kFewestGround = 6.0;  // pixels
 
-using Row = Eigen::Vector3d;
+using PlaneRow = Eigen::Vector3d;
 
 // The pixels around a place, by their distance from it in the window's units.
 class Around {
@@ -60,16 +60,16 @@ class Around {
 };
 
 struct Ground {
-    Row plane = Row::Zero();  // light = plane · (1, dx, dy)
+    PlaneRow plane = PlaneRow::Zero();  // light = plane · (1, dx, dy)
     Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
 };
 
 std::optional<Ground> ground_of(const Around& around, const SpotWindow& window) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Row right = Row::Zero();
+    PlaneRow right = PlaneRow::Zero();
     const bool is_finite = around.each([&](double dx, double dy, double light, double distance) {
         if (distance > window.inner && distance < window.outer) {
-            const Row row(1.0, dx, dy);
+            const PlaneRow row(1.0, dx, dy);
             normal += row * row.transpose();
             right += light * row;
         }
@@ -97,7 +97,7 @@ std::optional<Spot> centroid(const formats::Image& image, int channel, const Vec
     double mass = 0.0;
     Vec2d moment;
     around.each([&](double dx, double dy, double light, double distance) {
-        const double level = ground->plane.dot(Row(1.0, dx, dy));
+        const double level = ground->plane.dot(PlaneRow(1.0, dx, dy));
         const double fraction = fraction_at(distance);
         if (level > 0.0 && fraction > 0.0) {
             const double contrast = fraction * (level - light) / scale_at(level);
@@ -112,10 +112,10 @@ std::optional<Spot> centroid(const formats::Image& image, int channel, const Vec
     const Vec2d off{moment.x / mass, moment.y / mass};
     // What a pixel's light does to the centroid: by itself, inside, and by the ground's plane.
     Vec2d squares;
-    Row of_plane_x = Row::Zero();
-    Row of_plane_y = Row::Zero();
+    PlaneRow of_plane_x = PlaneRow::Zero();
+    PlaneRow of_plane_y = PlaneRow::Zero();
     around.each([&](double dx, double dy, double light, double distance) {
-        const Row row(1.0, dx, dy);
+        const PlaneRow row(1.0, dx, dy);
         const double level = ground->plane.dot(row);
         const double fraction = fraction_at(distance);
         if (level > 0.0 && fraction > 0.0) {

@@ -9,21 +9,21 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kStandsOut = 5.0;     // standard deviations of the mean of nine pixels
-constexpr double kNarrowest_px = 1.0;  // a narrower weight meets too few pixels of a small star to be even
+constexpr double kStandsOut = 5.0;           // standard deviations of the mean of nine pixels
+constexpr double kNarrowestWeight_px = 1.0;  // a narrower weight meets too few pixels of a small star to be even
 constexpr double kUsual_px = 1.5;
 constexpr double kCut = 4.0;  // of the weight's width: what is farther counts less than 4e-4
 constexpr int kStarRounds = 50;
 constexpr double kStill_px = 1e-4;
 
-struct Window {
+struct StarWindow {
     int left = 0;
     int top = 0;
     int right = 0;   // the last column,
     int bottom = 0;  // the last row
 
     /// The pixels within `reach` of `middle`, which is finite, along either axis.
-    Window(const formats::Image& image, const Vec2d& middle, double reach) {
+    StarWindow(const formats::Image& image, const Vec2d& middle, double reach) {
         const auto inside = [](double at, int pixels) { return static_cast<int>(std::clamp(at, -1.0, 1.0 * pixels)); };
         left = std::max(0, inside(std::ceil(middle.x - reach), image.width));
         top = std::max(0, inside(std::ceil(middle.y - reach), image.height));
@@ -47,7 +47,7 @@ struct Sky {
 };
 
 // Stars take up little of it.
-std::optional<Sky> sky_around(const formats::Image& image, int channel, const Window& window) {
+std::optional<Sky> sky_around(const formats::Image& image, int channel, const StarWindow& window) {
     std::vector<double> lights;
     window.each([&](int x, int y) { lights.push_back(image.at(x, y, channel)); });
     if (lights.empty() || !std::ranges::all_of(lights, [](double light) { return std::isfinite(light); })) {
@@ -64,7 +64,7 @@ std::optional<Sky> sky_around(const formats::Image& image, int channel, const Wi
 // The middle of the brightest 3 × 3 pixels.
 std::optional<Vec2d> brightest(const formats::Image& image, int channel, const Vec2d& near, double reach,
                                const Sky& sky) {
-    Window inside(image, near, reach);
+    StarWindow inside(image, near, reach);
     inside.left = std::max(inside.left, 1);
     inside.top = std::max(inside.top, 1);
     inside.right = std::min(inside.right, image.width - 2);
@@ -93,7 +93,7 @@ struct Moments {
 
 Moments weighted(const formats::Image& image, int channel, const Vec2d& at, double width, const Sky& sky) {
     Moments sums;
-    Window(image, at, kCut * width).each([&](int x, int y) {
+    StarWindow(image, at, kCut * width).each([&](int x, int y) {
         const Vec2d d{x - at.x, y - at.y};
         const double weight = std::exp(-0.5 * dot(d, d) / (width * width));
         const double light = weight * (image.at(x, y, channel) - sky.light);
@@ -113,7 +113,7 @@ std::optional<StarPlace> locate_star(const formats::Image& image, int channel, c
     if (!std::isfinite(near_px.x + near_px.y)) {
         return std::nullopt;
     }
-    const auto sky = sky_around(image, channel, Window(image, near_px, 2.0 * reach_px));
+    const auto sky = sky_around(image, channel, StarWindow(image, near_px, 2.0 * reach_px));
     auto at = sky ? brightest(image, channel, near_px, reach_px, *sky) : std::nullopt;
     double width = kUsual_px;
     for (int round = 0; round < kStarRounds && at; ++round) {
@@ -127,7 +127,7 @@ std::optional<StarPlace> locate_star(const formats::Image& image, int channel, c
         const double own = inverse > 1.0 / (widest * widest) ? 1.0 / std::sqrt(inverse) : widest;
         const double gain = 1.0 + own * own / (width * width);
         const Vec2d step = gain * sums.off;
-        const double next = std::max(own, kNarrowest_px);
+        const double next = std::max(own, kNarrowestWeight_px);
         if (length(step) < kStill_px && std::abs(next - width) < kStill_px) {
             const Vec2d error{std::sqrt(sums.squares.x), std::sqrt(sums.squares.y)};
             return StarPlace{.centre_px = *at, .standard_error_px = (gain * sky->noise / sums.light) * error};

@@ -103,13 +103,13 @@ SeenPoints chart_view(const SeenPoints& seen, const Profile& profile, double dis
     return view;
 }
 
-struct Candidate {
+struct CandidateSetup {
     double distance_mm = 0.0;
     double about_x = 0.0;
     double about_y = 0.0;
 };
 
-std::string candidate_text(const Candidate& of) {
+std::string candidate_text(const CandidateSetup& of) {
     const bool is_tilted = of.about_x != 0.0 || of.about_y != 0.0;
     return fmt::format("the same focus, and a chart that fills the frame at {:.0f} mm, {}", of.distance_mm,
                        !is_tilted
@@ -118,9 +118,9 @@ std::string candidate_text(const Candidate& of) {
                                          of.about_x != 0.0 ? "horizontal" : "vertical"));
 }
 
-std::vector<Candidate> candidates(double distance_mm) {
+std::vector<CandidateSetup> candidates(double distance_mm) {
     constexpr double kTilt = 35.0 * kDegree;
-    std::vector<Candidate> all;
+    std::vector<CandidateSetup> all;
     for (const double factor : {0.5, 1.0, 2.0, 5.0}) {
         all.push_back({factor * distance_mm, 0.0, 0.0});
         all.push_back({factor * distance_mm, kTilt, 0.0});
@@ -145,7 +145,7 @@ std::optional<Suggestion> suggest_picture(const ExplainedLens& lens, const SeenP
     const auto directions = open_directions(lens.changes, fit);
     std::optional<Suggestion> best;
     double best_share = kWorthwhile;
-    for (const Candidate& candidate : candidates(seen.camera.chart_mm.front())) {
+    for (const CandidateSetup& candidate : candidates(seen.camera.chart_mm.front())) {
         const SeenPoints view = chart_view(seen, profile, candidate.distance_mm, candidate.about_x, candidate.about_y);
         LensState state{.changes = fit.state.changes, .poses = {PoseParameters{}}};
         ResidualTracer tracer(lens, view);

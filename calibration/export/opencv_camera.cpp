@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kFitColumns = 49;
 constexpr double kLargestSlope = 30.0;  // of X/Z: 88°; OpenCV's functions, fisheyes' too, divide by Z
-constexpr int kReweightings = 12;
+constexpr int kPinholeReweightings = 12;
 
 cv::Matx33d matrix_of(const OpencvCamera& camera) {
     return {camera.focal_px, 0.0, camera.centre_px.x, 0.0, camera.focal_y_px(), camera.centre_px.y, 0.0, 0.0, 1.0};
@@ -132,7 +132,7 @@ double denominator_at(const OpencvCamera& camera, const Vec3d& direction) {
 /// Without a denominator one round is exact.
 std::optional<OpencvCamera> fit_pinhole(const std::vector<FramePoint>& frame, std::size_t coefficients) {
     OpencvCamera camera;
-    for (int round = 0; round < (coefficients > 5 ? kReweightings : 1); ++round) {
+    for (int round = 0; round < (coefficients > 5 ? kPinholeReweightings : 1); ++round) {
         Rows rows;
         for (const FramePoint& point : frame) {
             if (!is_in_front(point.direction)) {

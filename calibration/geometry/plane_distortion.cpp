@@ -21,7 +21,7 @@ constexpr std::size_t kMostViews = 8;  // the more points, the rather; every vie
 constexpr double kPlaneOutlierSigmas = 6.0;
 constexpr double kLeastPlaneSigma_px = 0.005;  // no detector is better
 constexpr int kSteps = 30;
-constexpr double kSettled = 1e-10;  // of the parameters, which are of the order of 1
+constexpr double kPlaneSettled = 1e-10;  // of the parameters, which are of the order of 1
 
 // Points of a view in units of order 1.
 struct PlaneView {
@@ -118,7 +118,7 @@ std::optional<PlaneFit> fit_terms(const std::vector<PlaneView>& views, const Eig
         fit.parameters += linear->parameters;
         const double moved = linear->parameters.cwiseAbs().maxCoeff();
         fit.last = std::move(*linear);
-        if (moved < (robust ? kSettled : 1e-4)) {
+        if (moved < (robust ? kPlaneSettled : 1e-4)) {
             if (robust) {
                 return fit;
             }

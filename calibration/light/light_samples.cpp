@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kCellsAlongFrame = 48;
 constexpr double kDark = 0.02;
-constexpr int kMargin = 2;  // cells: an edge can cross one cell and leave a sliver in the next
+constexpr int kCellMargin = 2;  // cells: an edge can cross one cell and leave a sliver in the next
 constexpr double kClippedShare = 0.01;
 constexpr float kFullScale = 1.0F;
 constexpr double kWhitePart = 0.6;  // of a square's side, so that blur and the corners' errors stay outside
@@ -99,8 +99,8 @@ LightGroup flat_field_samples(const formats::Image& image, int channel) {
         }
     }
     const auto beside_dark = [&](int column, int row) {
-        for (int r = std::max(row - kMargin, 0); r <= std::min(row + kMargin, rows - 1); ++r) {
-            for (int c = std::max(column - kMargin, 0); c <= std::min(column + kMargin, columns - 1); ++c) {
+        for (int r = std::max(row - kCellMargin, 0); r <= std::min(row + kCellMargin, rows - 1); ++r) {
+            for (int c = std::max(column - kCellMargin, 0); c <= std::min(column + kCellMargin, columns - 1); ++c) {
                 if (state[static_cast<std::size_t>(r) * columns + c] == Cell::dark) {
                     return true;
                 }

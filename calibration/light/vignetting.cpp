@@ -17,16 +17,16 @@ namespace lensproof::calibration {
 namespace {
 
 constexpr std::array<int, 9> kSpans = {1, 2, 3, 4, 6, 8, 12, 16, 24};
-constexpr double kOutlierSigmas = 5.0;
+constexpr double kPatchOutlierSigmas = 5.0;
 constexpr std::size_t kFewestSamples = 12;
 constexpr std::size_t kPooled = 31;         // patches whose noise is taken to be the same
 constexpr std::size_t kFewestPerGroup = 5;  // a group's own terms are three
 constexpr int kSamplesPerParameter = 4;
-constexpr double kLeastRelativeError = 1e-3;  // dust, print and pixel response: no patch is evener than that
-constexpr double kLeastScale = 2.0;           // of that: within 1 % nothing is an outlier
+constexpr double kLeastPatchError = 1e-3;  // dust, print and pixel response: no patch is evener than that
+constexpr double kLeastScale = 2.0;        // of that: within 1 % nothing is an outlier
 constexpr double kGradientUnit_mm = 100.0;
 
-struct Row {
+struct PatchRow {
     Vec2d pixel_px;
     Vec2d at;  // from the centre, in half-diagonals
     double r = 0.0;
@@ -59,8 +59,8 @@ void pool_errors(std::vector<LightSample>& samples) {
     }
 }
 
-std::vector<Row> rows_of(const std::vector<LightGroup>& groups, const Vec2d& centre, double half_diagonal) {
-    std::vector<Row> rows;
+std::vector<PatchRow> rows_of(const std::vector<LightGroup>& groups, const Vec2d& centre, double half_diagonal) {
+    std::vector<PatchRow> rows;
     int index = 0;
     for (const LightGroup& group : groups) {
         std::vector<LightSample> lit;
@@ -71,7 +71,7 @@ std::vector<Row> rows_of(const std::vector<LightGroup>& groups, const Vec2d& cen
             continue;
         }
         pool_errors(lit);
-        std::vector<Row> own;
+        std::vector<PatchRow> own;
         own.reserve(lit.size());
         for (const LightSample& s : lit) {
             const Vec2d at{(s.pixel_px.x - centre.x) / half_diagonal, (s.pixel_px.y - centre.y) / half_diagonal};
@@ -79,7 +79,7 @@ std::vector<Row> rows_of(const std::vector<LightGroup>& groups, const Vec2d& cen
                            .at = at,
                            .r = std::hypot(at.x, at.y),
                            .log_value = std::log(s.value),
-                           .sigma = std::hypot(s.relative_error, kLeastRelativeError),
+                           .sigma = std::hypot(s.relative_error, kLeastPatchError),
                            .chart = {s.chart_mm.x / kGradientUnit_mm, s.chart_mm.y / kGradientUnit_mm},
                            .group = index,
                            .on_chart = group.on_chart});
@@ -91,10 +91,10 @@ std::vector<Row> rows_of(const std::vector<LightGroup>& groups, const Vec2d& cen
 }
 
 // Columns: the spline's coefficients, then a gain for every group, then two gradients for every chart.
-LinearProblem linear_problem(const std::vector<Row>& rows, const EvenSpline& spline) {
+LinearProblem linear_problem(const std::vector<PatchRow>& rows, const EvenSpline& spline) {
     std::vector<int> first_column;
     int columns = spline.size();
-    for (const Row& row : rows) {
+    for (const PatchRow& row : rows) {
         if (row.group == static_cast<int>(first_column.size())) {
             first_column.push_back(columns);
             columns += row.on_chart ? 3 : 1;
@@ -106,7 +106,7 @@ LinearProblem linear_problem(const std::vector<Row>& rows, const EvenSpline& spl
                           .row_sigma = Eigen::VectorXd(count),
                           .group = {}};
     for (Eigen::Index i = 0; i < count; ++i) {
-        const Row& row = rows[static_cast<std::size_t>(i)];
+        const PatchRow& row = rows[static_cast<std::size_t>(i)];
         const int own = first_column[static_cast<std::size_t>(row.group)];
         problem.a.row(i).head(spline.size()) = spline.basis(row.r);
         problem.a(i, own) = 1.0;
@@ -126,14 +126,14 @@ struct Richest {
     LinearFit fit;
 };
 
-std::optional<Richest> richest(const std::vector<Row>& rows, double reach) {
+std::optional<Richest> richest(const std::vector<PatchRow>& rows, double reach) {
     for (auto spans = kSpans.rbegin(); spans != kSpans.rend(); ++spans) {
         const EvenSpline spline{*spans, reach};
         const LinearProblem problem = linear_problem(rows, spline);
         if (problem.a.cols() * kSamplesPerParameter > problem.a.rows() && *spans != kSpans.front()) {
             continue;
         }
-        if (auto fit = fit_linear(problem, kOutlierSigmas, kLeastScale)) {
+        if (auto fit = fit_linear(problem, kPatchOutlierSigmas, kLeastScale)) {
             return Richest{spline, std::move(*fit)};
         }
     }
@@ -141,7 +141,7 @@ std::optional<Richest> richest(const std::vector<Row>& rows, double reach) {
 }
 
 // Without outliers, and with errors that charts and flat fields show themselves.
-std::vector<Row> cleaned(const std::vector<Row>& rows, const LinearFit& fit) {
+std::vector<PatchRow> cleaned(const std::vector<PatchRow>& rows, const LinearFit& fit) {
     double squares[2] = {0.0, 0.0};
     int count[2] = {0, 0};
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -151,7 +151,7 @@ std::vector<Row> cleaned(const std::vector<Row>& rows, const LinearFit& fit) {
             ++count[rows[i].on_chart ? 1 : 0];
         }
     }
-    std::vector<Row> result;
+    std::vector<PatchRow> result;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (fit.used[i]) {
             const int kind = rows[i].on_chart ? 1 : 0;
@@ -165,10 +165,10 @@ std::vector<Row> cleaned(const std::vector<Row>& rows, const LinearFit& fit) {
 }
 
 // Groups whose samples all went are closed up, so that no column is empty.
-void renumber(std::vector<Row>& rows) {
+void renumber(std::vector<PatchRow>& rows) {
     int next = -1;
     int last = -1;
-    for (Row& row : rows) {
+    for (PatchRow& row : rows) {
         if (row.group != last) {
             last = row.group;
             ++next;
@@ -177,7 +177,8 @@ void renumber(std::vector<Row>& rows) {
     }
 }
 
-Vignetting sampled(const EvenSpline& spline, const SmoothedFit& fit, const std::vector<Row>& rows, double covered) {
+Vignetting sampled(const EvenSpline& spline, const SmoothedFit& fit, const std::vector<PatchRow>& rows,
+                   double covered) {
     Vignetting result;
     result.spans = spline.spans;
     result.samples_used = static_cast<int>(rows.size());
@@ -224,13 +225,15 @@ Vignetting fit_vignetting(const std::vector<LightGroup>& groups, const Vec2d& ce
     if (!(half_diagonal_px > 0.0) || !std::isfinite(centre_px.x + centre_px.y)) {
         throw InputError("vignetting: the picture has no size or no centre");
     }
-    std::vector<Row> rows = rows_of(groups, centre_px, half_diagonal_px);
+    std::vector<PatchRow> rows = rows_of(groups, centre_px, half_diagonal_px);
     if (rows.size() < kFewestSamples) {
         throw InputError("vignetting: " + std::to_string(rows.size()) +
                          " lit patches of even tone: expected at least " + std::to_string(kFewestSamples));
     }
-    const auto reach_of = [](const std::vector<Row>& list) {
-        return std::max_element(list.begin(), list.end(), [](const Row& a, const Row& b) { return a.r < b.r; })->r;
+    const auto reach_of = [](const std::vector<PatchRow>& list) {
+        return std::max_element(list.begin(), list.end(),
+                                [](const PatchRow& a, const PatchRow& b) { return a.r < b.r; })
+            ->r;
     };
     const auto fail = [&] {
         return InputError("vignetting: the " + std::to_string(rows.size()) +

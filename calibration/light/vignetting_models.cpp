@@ -15,10 +15,10 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr int kIterations = 30;
-constexpr double kSettled = 1e-10;
+constexpr int kModelIterations = 30;
+constexpr double kModelSettled = 1e-10;
 constexpr int kBlockSide = 11;
-constexpr int kFolds = 5;
+constexpr int kPatchFolds = 5;
 constexpr double kStep = 1e-6;  // of derivatives; parameters are of the order of one
 
 // A formula: its parameters' names, and V at a place.
@@ -99,7 +99,7 @@ struct FittedFormula {
 std::optional<FittedFormula> fitted(const Formula& formula, const std::vector<ShadingSample>& samples) {
     std::vector<double> p(formula.parameters.size(), 0.0);
     std::optional<LinearFit> fit;
-    for (int i = 0; i < kIterations; ++i) {
+    for (int i = 0; i < kModelIterations; ++i) {
         const auto problem = linearised(formula, p, samples);
         fit = problem ? fit_linear(*problem, 0.0) : std::nullopt;
         if (!fit) {
@@ -111,7 +111,7 @@ std::optional<FittedFormula> fitted(const Formula& formula, const std::vector<Sh
             p[k] += step;
             largest = std::max(largest, std::abs(step));
         }
-        if (largest < kSettled) {
+        if (largest < kModelSettled) {
             break;
         }
     }
@@ -194,7 +194,7 @@ Blocks blocks_of(const std::vector<ShadingSample>& samples) {
     }
     for (int row = 0; row < kBlockSide; ++row) {
         for (int column = 0; column < kBlockSide; ++column) {
-            blocks.fold.push_back((column + 2 * row) % kFolds);
+            blocks.fold.push_back((column + 2 * row) % kPatchFolds);
         }
     }
     return blocks;
@@ -207,7 +207,7 @@ using Fitter = std::function<std::optional<Prediction>(const std::vector<Shading
 std::optional<std::vector<double>> held_out_squares(const Fitter& fit, const std::vector<ShadingSample>& samples,
                                                     const Blocks& blocks) {
     std::vector<double> squares(blocks.fold.size(), 0.0);
-    for (int fold = 0; fold < kFolds; ++fold) {
+    for (int fold = 0; fold < kPatchFolds; ++fold) {
         const auto is_out = [&](std::size_t i) {
             return blocks.fold[static_cast<std::size_t>(blocks.block[i])] == fold;
         };
@@ -231,14 +231,14 @@ std::optional<std::vector<double>> held_out_squares(const Fitter& fit, const std
     return squares;
 }
 
-struct Candidate {
+struct CandidateModel {
     VignettingModel model;
     double terms = 0.0;
     std::vector<double> squares;
 };
 
 // How much more than `best` a candidate is off, in the sum of squares, less one standard error of the difference.
-double excess(const Candidate& candidate, const Candidate& best, const Blocks& blocks) {
+double excess(const CandidateModel& candidate, const CandidateModel& best, const Blocks& blocks) {
     std::vector<bool> is_lit(blocks.fold.size(), false);
     for (const int block : blocks.block) {
         is_lit[static_cast<std::size_t>(block)] = true;
@@ -261,11 +261,11 @@ std::string percent(double ratio) {
 
 // The simplest of those that predict as well as the best within chance comes first (Breiman et al. 1984, 3.4.3), then
 // by what they predict; and each is told why.
-void choose(std::vector<Candidate>& candidates, const Blocks& blocks) {
-    const auto held_out = [](const Candidate& c) { return c.model.held_out_relative_rms; };
+void choose(std::vector<CandidateModel>& candidates, const Blocks& blocks) {
+    const auto held_out = [](const CandidateModel& c) { return c.model.held_out_relative_rms; };
     std::stable_sort(candidates.begin(), candidates.end(),
-                     [&](const Candidate& a, const Candidate& b) { return held_out(a) < held_out(b); });
-    const Candidate best = candidates.front();
+                     [&](const CandidateModel& a, const CandidateModel& b) { return held_out(a) < held_out(b); });
+    const CandidateModel best = candidates.front();
     std::size_t chosen = 0;
     for (std::size_t i = 1; i < candidates.size(); ++i) {
         if (excess(candidates[i], best, blocks) <= 0.0 && candidates[i].terms < candidates[chosen].terms) {
@@ -310,7 +310,7 @@ std::vector<VignettingModel> fit_vignetting_models(const Vignetting& vignetting)
     for (const ShadingSample& sample : samples) {
         weights += 1.0 / (sample.sigma * sample.sigma);
     }
-    std::vector<Candidate> candidates;
+    std::vector<CandidateModel> candidates;
     const auto add = [&](VignettingModel model, double terms, const Fitter& fit) {
         auto squares = held_out_squares(fit, samples, blocks);
         if (squares) {
@@ -340,7 +340,7 @@ std::vector<VignettingModel> fit_vignetting_models(const Vignetting& vignetting)
     }
     std::vector<VignettingModel> models;
     models.reserve(candidates.size());
-    for (Candidate& candidate : candidates) {
+    for (CandidateModel& candidate : candidates) {
         models.push_back(std::move(candidate.model));
     }
     return models;

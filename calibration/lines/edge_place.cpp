@@ -18,20 +18,20 @@ constexpr double kWorstShape = 0.12;    // rms of what a blurred step leaves, of
 constexpr double kWorstPlace_px = 0.3;  // standard error
 constexpr double kSharpest_px = 0.25;   // of the Gaussian's σ
 constexpr double kBluntest_px = 4.0;
-constexpr std::size_t kFewestSamples = 9;
+constexpr std::size_t kFewestEdgeSamples = 9;
 constexpr int kPlaceSteps = 25;
 
 // Light across, one value every half pixel.
-struct Across {
+struct LightAcross {
     std::vector<double> at_px;
     std::vector<double> light;
 };
 
-Across light_across(const cv::Mat& plane, const EdgePiece& piece) {
+LightAcross light_across(const cv::Mat& plane, const EdgePiece& piece) {
     const Vec2d across{piece.along.y, -piece.along.x};
     const int reach = static_cast<int>(std::ceil(piece.reach_px / kAcrossStep_px));
     const int half = std::max(1, static_cast<int>(std::lround(2.0 * piece.half_length_px)));
-    Across result;
+    LightAcross result;
     for (int i = -reach; i <= reach; ++i) {
         const double d = kAcrossStep_px * i;
         double sum = 0.0;
@@ -52,7 +52,7 @@ bool is_inside(const cv::Mat& plane, const EdgePiece& piece) {
 }
 
 // The samples from the steepest rise outwards, as far as light goes on rising or stays; none without a rise.
-std::optional<Across> around_the_rise(const Across& all) {
+std::optional<LightAcross> around_the_rise(const LightAcross& all) {
     const std::size_t n = all.light.size();
     std::vector<double> slope(n, 0.0);
     for (std::size_t i = 1; i + 1 < n; ++i) {
@@ -78,12 +78,12 @@ std::optional<Across> around_the_rise(const Across& all) {
     };
     const std::size_t first = walked(at, -1);
     const std::size_t last = walked(at, 1);
-    Across part;
+    LightAcross part;
     for (std::size_t i = first; i <= last; ++i) {
         part.at_px.push_back(all.at_px[i]);
         part.light.push_back(all.light[i]);
     }
-    return part.light.size() < kFewestSamples ? std::nullopt : std::optional(part);
+    return part.light.size() < kFewestEdgeSamples ? std::nullopt : std::optional(part);
 }
 
 double normal_part(double z) {
@@ -99,7 +99,7 @@ struct StepSums {
     double squares = 0.0;
 };
 
-StepSums sums_of(const Across& across, const Step& step) {
+StepSums sums_of(const LightAcross& across, const Step& step) {
     StepSums sums;
     for (std::size_t i = 0; i < across.light.size(); ++i) {
         const double z = (across.at_px[i] - step[2]) / step[3];
@@ -115,7 +115,7 @@ StepSums sums_of(const Across& across, const Step& step) {
 }
 
 // Levenberg's steps; none where they do not settle on a step of a sensible blur.
-std::optional<Step> fitted_step(const Across& across) {
+std::optional<Step> fitted_step(const LightAcross& across) {
     const auto [low, high] = std::ranges::minmax(across.light);
     const auto steepest = [&] {
         std::size_t best = 1;

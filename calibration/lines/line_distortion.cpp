@@ -18,30 +18,30 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kLeastSigma_px = 0.02;  // of a point: what repeats along an edge is not scatter
-constexpr double kTolerance_px = 0.3;    // of a straight line's points, where noise is less,
-constexpr double kTolerancePart = 3e-4;  // or of half the diagonal
-constexpr double kStraightShare = 0.5;   // of the lines' length, which a lens has to straighten
-constexpr double kFisheyeGain = 1.02;    // of the straight length, by which a fisheye's law has to do better
-constexpr double kLeastCosine = 0.02;    // tan θ has no value at 90°
-constexpr int kFewestTerms = 2;          // of a lens's shape
-constexpr int kParts = 4;                // of the frame, along each side
+constexpr double kLeastPointSigma_px = 0.02;  // of a point: what repeats along an edge is not scatter
+constexpr double kTolerance_px = 0.3;         // of a straight line's points, where noise is less,
+constexpr double kTolerancePart = 3e-4;       // or of half the diagonal
+constexpr double kStraightShare = 0.5;        // of the lines' length, which a lens has to straighten
+constexpr double kFisheyeGain = 1.02;         // of the straight length, by which a fisheye's law has to do better
+constexpr double kLeastCosine = 0.02;         // tan θ has no value at 90°
+constexpr int kFewestTerms = 2;               // of a lens's shape
+constexpr int kParts = 4;                     // of the frame, along each side
 constexpr int kFewestParts = 5;
 constexpr double kWidest_percent = 3.0;  // half the 95 % interval where the lines end
 constexpr std::size_t kReachingLines = 3;
 constexpr double kFarthestCentre = 0.15;  // half diagonals; lenses' are nearer
 constexpr double kTold = 0.5;  // of the prior's error, which what the lines tell of the centre has to be within
 
-struct Frame {
+struct LineFrame {
     Vec2d middle;
     double half_diagonal = 1.0;
 };
 
-std::vector<PlumbLine> in_half_diagonals(const std::vector<SceneLine>& lines, const Frame& frame) {
+std::vector<PlumbLine> in_half_diagonals(const std::vector<SceneLine>& lines, const LineFrame& frame) {
     std::vector<PlumbLine> result;
     for (const SceneLine& line : lines) {
         PlumbLine& own = result.emplace_back();
-        own.sigma = std::hypot(line.noise_px, kLeastSigma_px) / frame.half_diagonal;
+        own.sigma = std::hypot(line.noise_px, kLeastPointSigma_px) / frame.half_diagonal;
         for (const Vec2d& p : line.points_px) {
             own.points.push_back((p - frame.middle) / frame.half_diagonal);
         }
@@ -49,7 +49,7 @@ std::vector<PlumbLine> in_half_diagonals(const std::vector<SceneLine>& lines, co
     return result;
 }
 
-double tolerance_of(const std::vector<SceneLine>& lines, const Frame& frame) {
+double tolerance_of(const std::vector<SceneLine>& lines, const LineFrame& frame) {
     std::vector<double> noise;
     noise.reserve(lines.size());
     for (const SceneLine& line : lines) {
@@ -192,7 +192,7 @@ InputError no_lens(std::size_t found) {
                     found, kFewestLines)};
 }
 
-void add_terms(LineDistortion& result, const PlumbFit& fit, const Frame& frame) {
+void add_terms(LineDistortion& result, const PlumbFit& fit, const LineFrame& frame) {
     const bool is_fisheye = fit.model.kind == PlumbKind::fisheye;
     for (int k = 0; k < fit.model.terms; ++k) {
         result.names.push_back(!is_fisheye ? fmt::format("k{}", k + 1) : k == 0 ? "phi" : fmt::format("b{}", k));
@@ -213,7 +213,7 @@ void add_terms(LineDistortion& result, const PlumbFit& fit, const Frame& frame) 
 }
 
 void account_for(std::vector<SceneLine>& lines, const std::vector<PlumbLine>& scaled, const std::vector<bool>& used,
-                 const PlumbModel& model, const Frame& frame, LineDistortion& result) {
+                 const PlumbModel& model, const LineFrame& frame, LineDistortion& result) {
     double squares = 0.0;
     double freedom = 0.0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -238,7 +238,7 @@ void account_for(std::vector<SceneLine>& lines, const std::vector<PlumbLine>& sc
 }
 
 // A page that is not flat bends lines too, seldom about the picture's middle.
-void check_centre(const LineDistortion& result, const Frame& frame) {
+void check_centre(const LineDistortion& result, const LineFrame& frame) {
     const double off = length(result.centre_px - frame.middle);
     if (off > kFarthestCentre * frame.half_diagonal) {
         throw InputError(fmt::format(
@@ -270,8 +270,8 @@ LineDistortion fit_line_distortion(std::vector<SceneLine>& lines, int width_px, 
                         "tenth of the diagonal long",
                         lines.size(), kFewestLines));
     }
-    const Frame frame{.middle = {0.5 * (width_px - 1), 0.5 * (height_px - 1)},
-                      .half_diagonal = 0.5 * std::hypot(width_px, height_px)};
+    const LineFrame frame{.middle = {0.5 * (width_px - 1), 0.5 * (height_px - 1)},
+                          .half_diagonal = 0.5 * std::hypot(width_px, height_px)};
     const std::vector<PlumbLine> scaled = in_half_diagonals(lines, frame);
     const auto consensus = best_consensus(scaled, tolerance_of(lines, frame));
     if (!consensus) {

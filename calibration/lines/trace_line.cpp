@@ -14,7 +14,7 @@ namespace {
 constexpr double kLeastSpacing_px = 3.0;
 constexpr double kMostPlaces = 120.0;
 constexpr double kReach_px = 6.0;
-constexpr double kLeastShare = 0.33;  // of the places, which show the edge: half of a chessboard's do
+constexpr double kLeastSeenShare = 0.33;  // of the places, which show the edge: half of a chessboard's do
 constexpr std::size_t kFewestLinePoints = 15;
 constexpr int kCurveDegree = 5;  // of the curve across the chord
 constexpr double kOffCurveSigmas = 4.0;
@@ -159,7 +159,7 @@ std::optional<SceneLine> trace_line(const cv::Mat& plane, const LineChain& chain
     const std::vector<EdgePiece> pieces = pieces_along(way, spacing, kReach_px);
     const std::vector<Vec2d> points = places_at(plane, pieces);
     const auto fine = smooth_curve(points);
-    if (!fine || static_cast<double>(points.size()) < kLeastShare * static_cast<double>(pieces.size())) {
+    if (!fine || static_cast<double>(points.size()) < kLeastSeenShare * static_cast<double>(pieces.size())) {
         return std::nullopt;
     }
     SceneLine line;

@@ -16,8 +16,8 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kColoursApart_px = 0.05;  // two ways of finding the same discs differ by 0.04 px
-constexpr std::size_t kFewestPairs = 5;    // whose scatter tells a standard error
+constexpr double kColoursApart_px = 0.05;    // two ways of finding the same discs differ by 0.04 px
+constexpr std::size_t kFewestBandPairs = 5;  // whose scatter tells a standard error
 
 // "450" or "450.5": as few digits as tell a hundredth of a nanometre.
 std::string in_nm(double wavelength_nm) {
@@ -112,7 +112,7 @@ Apart apart(const std::vector<std::optional<Vec2d>>& a, const std::vector<std::o
             pairs.push_back({*a[i], *b[i]});
         }
     }
-    if (pairs.size() < kFewestPairs) {
+    if (pairs.size() < kFewestBandPairs) {
         return {};
     }
     const FittedTerms terms = mean_shift(pairs, centre);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kEdgeWidth = 2.563;  // from 10 % to 90 % of a Gaussian's edge, in its standard deviations
 constexpr double kWidestEdge_fraction = 0.25;
-constexpr float kFullScale = 0.998F;         // 8-bit 255, and half a step below it in the light
+constexpr float kNearFullScale = 0.998F;     // 8-bit 255, and half a step below it in the light
 constexpr double kMostClipped = 0.3;         // of a picture
 constexpr double kDarkest = 0.02;            // of full scale, what the brightest parts should reach
 constexpr double kLeastSlope_per_px = 0.06;  // steepest slope over contrast: a Gaussian edge of σ = 6.6 px
@@ -44,7 +44,7 @@ std::string too_blurred(const PictureTraits& traits, const ChartPoints& points, 
 }
 
 bool is_white_clipped(const PictureTraits& traits) {
-    return traits.white >= kFullScale;
+    return traits.white >= kNearFullScale;
 }
 
 std::string visible_fault(const formats::Image& image, int channel) {
@@ -63,8 +63,9 @@ std::string visible_fault(const formats::Image& image, int channel) {
     if (tones.empty()) {
         return "";
     }
-    const double clipped = static_cast<double>(std::ranges::count_if(tones, [](float v) { return v >= kFullScale; })) /
-                           static_cast<double>(tones.size());
+    const double clipped =
+        static_cast<double>(std::ranges::count_if(tones, [](float v) { return v >= kNearFullScale; })) /
+        static_cast<double>(tones.size());
     const double bright = quantile(tones, 0.995);
     const double contrast = bright - quantile(tones, 0.005);
     if (clipped > kMostClipped) {

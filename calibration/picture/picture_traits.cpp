@@ -15,13 +15,13 @@ namespace {
 constexpr double kSteepest = 0.98;   // of the pixels around a point are less steep than the edge's middle
 constexpr double kAboveNoise = 5.0;  // that an edge has to be for its blur to be told
 
-struct Window {
+struct EdgeWindow {
     double white;
     double black;
     double steepest;  // change over 2 px
 };
 
-std::optional<Window> look_around(const formats::Image& image, int channel, const Vec2d& point, int reach) {
+std::optional<EdgeWindow> look_around(const formats::Image& image, int channel, const Vec2d& point, int reach) {
     const int x0 = std::max(1, static_cast<int>(std::lround(point.x)) - reach);
     const int x1 = std::min(image.width - 2, static_cast<int>(std::lround(point.x)) + reach);
     const int y0 = std::max(1, static_cast<int>(std::lround(point.y)) - reach);
@@ -41,13 +41,13 @@ std::optional<Window> look_around(const formats::Image& image, int channel, cons
     if (tones.size() < 25) {
         return std::nullopt;
     }
-    return Window{quantile(tones, 0.95), quantile(tones, 0.05), quantile(steps, kSteepest)};
+    return EdgeWindow{quantile(tones, 0.95), quantile(tones, 0.05), quantile(steps, kSteepest)};
 }
 
-double median_of(const std::vector<Window>& windows, double Window::*member) {
+double median_of(const std::vector<EdgeWindow>& windows, double EdgeWindow::*member) {
     std::vector<double> values;
     values.reserve(windows.size());
-    for (const Window& window : windows) {
+    for (const EdgeWindow& window : windows) {
         values.push_back(window.*member);
     }
     return quantile(values, 0.5);
@@ -56,7 +56,7 @@ double median_of(const std::vector<Window>& windows, double Window::*member) {
 }  // namespace
 
 std::optional<PictureTraits> picture_traits(const formats::Image& image, int channel, const ChartPoints& points) {
-    std::vector<Window> windows;
+    std::vector<EdgeWindow> windows;
     std::vector<double> blurs;
     for (std::size_t i = 0; i < points.image_px.size(); ++i) {
         if (const auto window = points.found[i]
@@ -68,11 +68,11 @@ std::optional<PictureTraits> picture_traits(const formats::Image& image, int cha
     if (windows.empty()) {
         return std::nullopt;
     }
-    PictureTraits traits{.white = median_of(windows, &Window::white),
-                         .black = median_of(windows, &Window::black),
+    PictureTraits traits{.white = median_of(windows, &EdgeWindow::white),
+                         .black = median_of(windows, &EdgeWindow::black),
                          .noise = pixel_noise(image, channel, points),
                          .blur_px = {}};
-    for (const Window& window : windows) {
+    for (const EdgeWindow& window : windows) {
         const double contrast = window.white - window.black;
         if (contrast > kAboveNoise * traits.noise && window.steepest > kAboveNoise * traits.noise) {
             const double steepest_of_contrast = std::min(window.steepest / contrast, 1.0 - 1e-6);

@@ -9,7 +9,7 @@
 namespace lensproof::calibration {
 namespace {
 constexpr std::size_t kFewestPoints = 8;
-constexpr double kUnknowns = 2.0;  // of a plane through the camera
+constexpr double kPlaneUnknowns = 2.0;  // of a plane through the camera
 
 std::optional<ProfileLine> straightness_of(const LinePoints& line, const CameraModel& model) {
     std::vector<Vec2d> pixels;
@@ -38,12 +38,12 @@ std::optional<ProfileLine> straightness_of(const LinePoints& line, const CameraM
         squares += std::pow(pixel->x - pixels[i].x, 2) + std::pow(pixel->y - pixels[i].y, 2);
     }
     const auto count = static_cast<double>(pixels.size());
-    const double rms = std::sqrt(squares / (count - kUnknowns));
+    const double rms = std::sqrt(squares / (count - kPlaneUnknowns));
     return ProfileLine{.is_column = line.is_column,
                        .index = line.index,
                        .points = static_cast<int>(pixels.size()),
                        .rms_px = rms,
-                       .rms_standard_error_px = rms / std::sqrt(2.0 * (count - kUnknowns)),
+                       .rms_standard_error_px = rms / std::sqrt(2.0 * (count - kPlaneUnknowns)),
                        .noise_px = std::sqrt(noise / count)};
 }
 

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kPixelBox_px2 = 1.0 / 12.0;  // variance of a pixel's own box, which the simulation adds by itself
 constexpr double kUsualBlur_px = 0.5;
-constexpr std::size_t kFewestViews = 3;  // that are simulated, of as many,
-constexpr std::size_t kUsualViews = 6;   // if their pixels are no more than these
+constexpr std::size_t kFewestSimulatedViews = 3;  // that are simulated, of as many,
+constexpr std::size_t kUsualViews = 6;            // if their pixels are no more than these
 constexpr double kMostPixels = 36e6;
 
 // The curve between its samples, and straight on beyond them: held at its end it would have a kink that the measured
@@ -112,7 +112,7 @@ std::vector<const ProfileView*> sampled_views(const Profile& profile) {
     }
     const auto affordable = static_cast<std::size_t>(kMostPixels / profile.width_px / profile.height_px);
     const std::size_t wanted = std::max(kUsualViews, (all.size() + 1) / 2);
-    const std::size_t count = std::min(all.size(), std::max(kFewestViews, std::min(wanted, affordable)));
+    const std::size_t count = std::min(all.size(), std::max(kFewestSimulatedViews, std::min(wanted, affordable)));
     std::vector<const ProfileView*> sampled;
     for (std::size_t i = 0; i < count; ++i) {
         sampled.push_back(all[i * all.size() / count]);

@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kShortestHalfLength_px = 8.0;
 constexpr double kNarrowestHalfWidth_px = 3.0;
-constexpr double kLeastContrast = 0.1;  // (bright − dark) / (bright + dark)
-constexpr double kClippedShare = 0.01;
+constexpr double kLeastAlignedContrast = 0.1;  // (bright − dark) / (bright + dark)
+constexpr double kClippedEdgeShare = 0.01;
 constexpr double kCutNoise = 0.02;  // zeros among this fraction and its complement: noise cut at black
 constexpr double kAlignmentBin_px = 0.5;
 constexpr int kIterations = 20;
 constexpr double kSettled_px = 1e-4;
 constexpr int kTerms = 3;  // beside the constant: slope, bow and S-shape
 
-std::array<double, kTerms> legendre(double t) {
+std::array<double, kTerms> legendre_terms(double t) {
     return {t, 0.5 * (3.0 * t * t - 1.0), 0.5 * t * (5.0 * t * t - 3.0)};
 }
 std::array<double, kTerms> legendre_derivative(double t) {
@@ -76,7 +76,7 @@ std::string unusable(const std::vector<EdgePixel>& pixels, const EdgeRegion& reg
         dark += p.across < 0.0 ? 1.0 : 0.0;
         zeros += p.across < 0.0 && p.value == 0.0 ? 1.0 : 0.0;
     }
-    if (full > kClippedShare * static_cast<double>(pixels.size())) {
+    if (full > kClippedEdgeShare * static_cast<double>(pixels.size())) {
         return "is clipped at white";
     }
     return zeros > kCutNoise * dark && zeros < (1.0 - kCutNoise) * dark ? "is clipped at black" : "";
@@ -89,7 +89,7 @@ struct Curve3 {
 
 void set_distances(std::vector<EdgePixel>& pixels, const Curve3& edge, double half_length) {
     for (EdgePixel& p : pixels) {
-        const auto basis = legendre(p.along / half_length);
+        const auto basis = legendre_terms(p.along / half_length);
         const auto derivative = legendre_derivative(p.along / half_length);
         double at = edge.offset;
         double slope = 0.0;
@@ -126,7 +126,7 @@ double improve(const std::vector<EdgePixel>& pixels, const EdgeProfile& profile,
         const auto k = static_cast<std::size_t>(bin);
         const double slope = profile.slope(k);
         const double residual = p.value - (profile.mean[k] + slope * (p.distance - profile.middle(k)));
-        const auto basis = legendre(p.along / half_length);
+        const auto basis = legendre_terms(p.along / half_length);
         const Eigen::Vector3d row = -slope * Eigen::Vector3d(basis[0], basis[1], basis[2]);
         normal += row * row.transpose();
         right += residual * row;
@@ -148,7 +148,7 @@ double improve(const std::vector<EdgePixel>& pixels, const EdgeProfile& profile,
 double bend(const Curve3& edge) {
     double largest = 0.0;
     for (double t = -1.0; t <= 1.0; t += 0.05) {
-        const auto basis = legendre(t);
+        const auto basis = legendre_terms(t);
         largest = std::max(largest, std::abs(edge.theta[1] * basis[1] + edge.theta[2] * basis[2]));
     }
     return largest;
@@ -223,7 +223,7 @@ std::variant<AlignedEdge, EdgeRefusal> align_edge(const formats::Image& image, i
     }
     const double dark = mean_of(pixels, -w, -0.7 * w);
     const double bright = mean_of(pixels, 0.7 * w, w);
-    if (!(bright - dark > kLeastContrast * (bright + dark)) || !(bright + dark > 0.0)) {
+    if (!(bright - dark > kLeastAlignedContrast * (bright + dark)) || !(bright + dark > 0.0)) {
         return EdgeRefusal{"has too little contrast"};
     }
     Curve3 edge;

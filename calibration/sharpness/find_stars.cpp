@@ -15,8 +15,8 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kSearchSide_px = 800.0;  // larger pictures vote in a copy of this size
-constexpr double kSteep = 0.2;            // of the steepest gradients
+constexpr double kStarSearchSide_px = 800.0;  // larger pictures vote in a copy of this size
+constexpr double kSteep = 0.2;                // of the steepest gradients
 constexpr int kMostVoters = 12000;
 constexpr int kMostCandidates = 6;
 constexpr double kNear_fraction = 0.03;       // of the copy's side, around a candidate that was tried
@@ -225,7 +225,7 @@ std::variant<StarMap, StarRefusal> star_around(const cv::Mat& plane, Vec2d place
 std::variant<std::vector<StarMap>, StarRefusal> find_stars(const formats::Image& image, int channel,
                                                            const scene::SiemensStar& star) {
     const cv::Mat plane = channel_plane(image, channel);
-    const double shrink = std::min(1.0, kSearchSide_px / std::max(image.width, image.height));
+    const double shrink = std::min(1.0, kStarSearchSide_px / std::max(image.width, image.height));
     cv::Mat copy;
     cv::GaussianBlur(plane, copy, {}, 1.0 / shrink);
     cv::resize(copy, copy, {}, shrink, shrink, cv::INTER_AREA);

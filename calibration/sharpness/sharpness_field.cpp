@@ -61,15 +61,15 @@ Eigen::RowVectorXd field_basis(double height, double tangential, int pairs) {
     return basis;
 }
 
-struct Candidate {
+struct CandidateFit {
     int pairs = 0;
     LinearFit fit;
     std::vector<BlurRow> rows;  // that it rests on
 };
 
 // The fit with the number of pairs of terms that AICc prefers, outliers taken out by the richest one alone.
-std::optional<Candidate> best_by_aicc(std::vector<BlurRow> rows,
-                                      const std::function<Eigen::RowVectorXd(const BlurRow&, int)>& basis) {
+std::optional<CandidateFit> best_by_aicc(std::vector<BlurRow> rows,
+                                         const std::function<Eigen::RowVectorXd(const BlurRow&, int)>& basis) {
     const auto fit_with = [&](int pairs, double outlier_sigmas) -> std::optional<LinearFit> {
         const auto count = static_cast<Eigen::Index>(rows.size());
         const Eigen::Index columns = basis(rows.front(), pairs).size();
@@ -100,7 +100,7 @@ std::optional<Candidate> best_by_aicc(std::vector<BlurRow> rows,
             break;
         }
     }
-    std::optional<Candidate> best;
+    std::optional<CandidateFit> best;
     double least = std::numeric_limits<double>::infinity();
     for (int pairs = 0; pairs <= kMostPairs; ++pairs) {
         auto fit = fit_with(pairs, 0.0);
@@ -110,7 +110,7 @@ std::optional<Candidate> best_by_aicc(std::vector<BlurRow> rows,
         const double criterion = aicc(fit->chi_squared, fit->rows_used, static_cast<double>(fit->parameters.size()));
         if (!best || criterion < least) {
             least = criterion;
-            best = Candidate{.pairs = pairs, .fit = std::move(*fit), .rows = {}};
+            best = CandidateFit{.pairs = pairs, .fit = std::move(*fit), .rows = {}};
         }
     }
     if (best) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kColumns = 31;
 constexpr int kRows = 21;
-constexpr double kReach = 1.0 / 12.0;  // of the diagonal
+constexpr double kMapReach = 1.0 / 12.0;  // of the diagonal
 
 struct WeighedValue {
     double value = 0.0;
@@ -37,7 +37,7 @@ double weighed_median(std::vector<WeighedValue> values) {
 
 SharpnessMap sharpness_map(const std::vector<EdgeMtf>& edges, int width_px, int height_px) {
     SharpnessMap map{.columns = kColumns, .rows = kRows, .mtf50_cycles_per_px = {}};
-    const double sigma = kReach * std::hypot(width_px, height_px);
+    const double sigma = kMapReach * std::hypot(width_px, height_px);
     for (int row = 0; row < kRows; ++row) {
         for (int column = 0; column < kColumns; ++column) {
             const Vec2d knot{(width_px - 1.0) * column / (kColumns - 1), (height_px - 1.0) * row / (kRows - 1)};

@@ -18,7 +18,7 @@ constexpr double kLeastModulation = 0.1;                               // of a c
 constexpr double kHighestByRound[] = {0.1, 0.2, 0.35, 0.5, 0.5, 0.5};  // cycles per pixel, by round
 
 // Least squares of a + b cos ψ + c sin ψ in a cell.
-struct Cell {
+struct PhaseCell {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     double x = 0.0;  // sums of the places
@@ -46,7 +46,7 @@ void fit_phase(const cv::Mat& plane, const scene::SiemensStar& star, StarMap& ma
     const int y0 = std::max(0, static_cast<int>(rim.centre_px.y) - reach);
     const int y1 = std::min(plane.rows - 1, static_cast<int>(rim.centre_px.y) + reach);
     for (const double highest : kHighestByRound) {
-        std::map<std::pair<int, int>, Cell> cells;
+        std::map<std::pair<int, int>, PhaseCell> cells;
         for (int y = y0; y <= y1; ++y) {
             for (int x = x0; x <= x1; ++x) {
                 const Vec2d p{static_cast<double>(x), static_cast<double>(y)};

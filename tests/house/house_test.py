@@ -11,8 +11,11 @@
   the arithmetic of std::complex (x / y becomes x), std::countr_zero and its kin (32, whatever the bits).
 - A namespace a file of tests, named as the file: they are compiled several to a text, some with another room's.
 - No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
-  namespace are linked into one program, which is undefined behaviour that no linker tells. universal-ctags finds the
-  definitions; without it this part is skipped, exit status 77.
+  namespace are linked into one program, which is undefined behaviour that no linker tells.
+- An unnamed namespace's name is alone in its room: sources are compiled several to a text, and one source more decides
+  which. Aliases that read the same may stand twice.
+
+universal-ctags finds the definitions; without it these two parts are skipped, exit status 77.
 
 Each check is tried first on a small house where it has to find something.
 """
@@ -120,22 +123,41 @@ def crowded(home):
             if not re.search(rf"^namespace lensproof\S*::{file.stem} {{", file.read_text(), re.MULTILINE)]
 
 
-def defined_twice(home):
+def definitions(home, files):
+    """Of ctags, and the file: of functions, types, variables and aliases in namespaces."""
     found = subprocess.run(
-        ["ctags", "--languages=C++", "--langmap=C++:.h.cpp", "--kinds-C++=csugtf", "--fields=+KSZ",
-         "--output-format=json", "-o", "-", *map(str, sources(home, HOUSES + ("tests",)))], check=True, capture_output=True, text=True)
-    places = collections.defaultdict(set)
+        ["ctags", "--languages=C++", "--langmap=C++:.h.cpp", "--kinds-C++=csugtfve", "--fields=+KSZ",
+         "--output-format=json", "-o", "-", *map(str, files)], check=True, capture_output=True, text=True)
     for line in found.stdout.splitlines():
         tag = json.loads(line)
+        # The members of types are what their types stand for.
+        if tag.get("scopeKind", "namespace") == "namespace" and tag["name"] != "main":
+            yield tag, pathlib.Path(tag["path"]).relative_to(home)
+
+
+def parameters_of(tag):
+    return re.sub(r"\b\w+(?=[,)])|\s", "", tag.get("signature", "")) if tag["kind"] == "function" else ""
+
+
+def defined_twice(home):
+    places = collections.defaultdict(set)
+    for tag, file in definitions(home, sources(home, HOUSES + ("tests",))):
         scope = tag.get("scope", "")
-        # What is unnamed is a file's own; so are the members of types, which their types stand for.
-        if "__anon" in scope + tag["name"] or tag.get("scopeKind", "namespace") != "namespace" or tag["name"] == "main":
-            continue
-        is_function = tag["kind"] == "function"
-        parameters = re.sub(r"\b\w+(?=[,)])|\s", "", tag.get("signature", "")) if is_function else ""
-        if not (is_function and re.search(r"\btemplate\b|\bstatic\b", tag.get("pattern", ""))):
-            places[f"{scope}::{tag['name']}{parameters}"].add(str(pathlib.Path(tag["path"]).relative_to(home)))
+        is_own = "__anon" in scope + tag["name"] or tag["kind"] in ("variable", "enumerator")
+        is_anyones = tag["kind"] == "function" and re.search(r"\btemplate\b|\bstatic\b", tag.get("pattern", ""))
+        if not is_own and not is_anyones:
+            places[f"{scope}::{tag['name']}{parameters_of(tag)}"].add(str(file))
     return [f"{name} is defined in {' and in '.join(sorted(files))}"
+            for name, files in sorted(places.items()) if len(files) > 1]
+
+
+def unnamed_twice(home):
+    places = collections.defaultdict(dict)
+    for tag, file in definitions(home, [file for file in sources(home) if file.suffix == ".cpp"]):
+        if "__anon" in tag.get("scope", ""):
+            what = tag.get("pattern", "") if tag["kind"] == "typedef" else str(file)
+            places[f"{namespace_of(file.parent)}::{tag['name']}{parameters_of(tag)}"].setdefault(what, str(file))
+    return [f"{name} has no namespace of its own in {' and in '.join(sorted(files.values()))}"
             for name, files in sorted(places.items()) if len(files) > 1]
 
 
@@ -175,12 +197,17 @@ def main():
                                     "engine/optics/b.cpp": "namespace lensproof {\n" + other + "\n}\n",
                                     "engine/scene/c.cpp": "namespace lensproof {\nnamespace {\n" + one + "\n}\n}\n"},
                     "engine/optics/a.cpp and in engine/optics/b.cpp")
-        faults += defined_twice(home)
+        planted(unnamed_twice, {f"engine/{file}.cpp": "namespace lensproof {\nnamespace {\n" + text + "\n}\n}\n"
+                                for file, text in (("optics/a", "constexpr int kA = 1;\nusing B = int;"),
+                                                   ("optics/b", "constexpr int kA = 2;\nusing B = int;"),
+                                                   ("scene/c", "constexpr int kA = 3;\nusing B = long;"))},
+                "kA has no namespace of its own in engine/optics/a.cpp and in engine/optics/b.cpp")
+        faults += defined_twice(home) + unnamed_twice(home)
     print("\n".join(faults) or f"{len(sources(home))} sources, {len(included_folders(home))} folders: nothing found")
     if faults:
         sys.exit(1)
     if not has_ctags:
-        print("skipped: names that are defined twice, because universal-ctags is not installed")
+        print("skipped: names that stand twice, because universal-ctags is not installed")
         sys.exit(SKIPPED)
 
 

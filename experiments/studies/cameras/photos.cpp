@@ -36,7 +36,7 @@ struct Photos {
     std::vector<ReferenceSource> references;
 };
 
-Photos read_one(TomlTable& table, findings::ExperimentFile& file) {
+Photos read_photos_table(TomlTable& table, findings::ExperimentFile& file) {
     Photos photos;
     photos.name = read_camera_name(table, file);
     photos.manifest = referred_file(table.file(), table.text("manifest"));
@@ -265,7 +265,7 @@ std::vector<findings::Check> photo_checks(const MeasuredCamera& camera, const Ph
 std::vector<findings::Study> read_photos(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
     for (TomlTable& table : file.tables("photos")) {
-        const Photos photos = read_one(table, file);
+        const Photos photos = read_photos_table(table, file);
         const auto carry_out = [photos](const findings::RunSettings& settings, const findings::RunProgress& progress,
                                         const findings::Findings&) {
             MeasuredCamera camera = measure_photos(photos, settings, progress);

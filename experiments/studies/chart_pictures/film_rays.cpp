@@ -11,7 +11,7 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr int kRings = 10;  // of a beam's rays
+constexpr int kBeamRings = 10;  // of a beam's rays
 
 /// A point of lens space as the meridional plane has it, and the way back: there the point lies at y ≤ 0, and images
 /// to y ≥ 0.
@@ -75,7 +75,7 @@ void FilmRays::add(const Vec3d& point, double share, std::vector<FilmLight>& lig
             continue;
         }
         for (const analysis::SpotRay& ray :
-             analysis::spot_rays(band.lens, *bundle, analysis::beam_outline(band.lens, *bundle), kRings)) {
+             analysis::spot_rays(band.lens, *bundle, analysis::beam_outline(band.lens, *bundle), kBeamRings)) {
             light.push_back({meridian.back(ray.point), share * ray.weight * band.rgb});
         }
     }

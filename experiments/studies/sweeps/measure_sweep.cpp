@@ -16,7 +16,7 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr double kMicrometres = 1000.0;  // of a mm
+constexpr double kMicrometresPerMm = 1000.0;  // of a mm
 
 std::optional<double> scaled(const std::optional<double>& value, double scale) {
     return value ? std::optional(scale * *value) : std::nullopt;
@@ -34,12 +34,12 @@ std::map<std::string, std::optional<double>> ray_quantities(const analysis::Lens
     const std::optional<double> colour =
         analysis.fields.size() > 1 ? difference(analysis.fields[1].lateral_colour, analysis.fields[2].lateral_colour)
                                    : field.lateral_colour;
-    return {{"spot_rms_um", scaled(field.spot_rms, kMicrometres)},
+    return {{"spot_rms_um", scaled(field.spot_rms, kMicrometresPerMm)},
             {"distortion_percent", field.distortion_percent},
             {"relative_illumination", field.relative_illumination},
             {"vignetting", field.vignetting},
             {"transmittance", field.transmittance},
-            {"lateral_colour_um", scaled(colour, kMicrometres)},
+            {"lateral_colour_um", scaled(colour, kMicrometresPerMm)},
             {"tangential_focus_mm", field.tangential_focus},
             {"sagittal_focus_mm", field.sagittal_focus},
             {"astigmatism_mm", difference(field.tangential_focus, field.sagittal_focus)},

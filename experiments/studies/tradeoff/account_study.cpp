@@ -108,16 +108,17 @@ Json effects_json(const std::vector<EffectAccount>& accounts) {
 }
 
 /// A part of a contribution, and how the charts call it.
-struct Part {
+struct ContributionPart {
     const char* name;
     const char* unit;
     Measured Contribution::*of;
 };
-constexpr std::array kParts = {Part{"px", "px", &Contribution::px}, Part{"ev", "EV", &Contribution::ev},
-                               Part{"ciede2000", "CIEDE2000", &Contribution::ciede2000}};
+constexpr std::array kParts = {ContributionPart{"px", "px", &Contribution::px},
+                               ContributionPart{"ev", "EV", &Contribution::ev},
+                               ContributionPart{"ciede2000", "CIEDE2000", &Contribution::ciede2000}};
 
 /// Predictions of a part whose error bars hold what was measured, of all that are more than nothing.
-std::string coverage(const std::vector<PlannedOutcome>& outcomes, const Part& part, bool of_bounds) {
+std::string coverage(const std::vector<PlannedOutcome>& outcomes, const ContributionPart& part, bool of_bounds) {
     int all = 0;
     int held = 0;
     for (const PlannedOutcome& outcome : outcomes) {
@@ -132,7 +133,8 @@ std::string coverage(const std::vector<PlannedOutcome>& outcomes, const Part& pa
     return fmt::format("{} of {}", held, all);
 }
 
-std::string scatter_svg(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes, const Part& part) {
+std::string scatter_svg(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes,
+                        const ContributionPart& part) {
     constexpr double kLeast = 1e-4;
     draw::PlotChart chart{
         .title = fmt::format("{}: what effects contribute", set.title),
@@ -240,7 +242,7 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
                                 .width = kSize.width,
                                 .height = kSize.height,
                                 .bytes = account_svg(set, outcomes)});
-    for (const Part& part : kParts) {
+    for (const ContributionPart& part : kParts) {
         subject.facts.push_back(
             {fmt::format("predictions in {} that hold what was measured, by two standard errors", part.unit),
              coverage(outcomes, part, false)});

@@ -16,15 +16,15 @@ namespace lensproof::studies {
 namespace {
 
 /// A way to render that leaves effects out, and which it has.
-struct Candidate {
+struct CandidateRender {
     Rung rung;
     std::vector<std::string> has;
 };
 
 /// From the cheapest on. Losses along the axis and cos⁴ are in all of them.
-const std::vector<Candidate>& candidates() {
-    static const std::vector<Candidate> all = [] {
-        std::vector<Candidate> list;
+const std::vector<CandidateRender>& candidates() {
+    static const std::vector<CandidateRender> all = [] {
+        std::vector<CandidateRender> list;
         const auto named = [](const char* name) { return *std::ranges::find(ladder(), name, &Rung::name); };
         const std::vector<std::string> profile = {"distortion", "lateral-colour", "vignetting"};
         std::vector<std::string> sharp = profile;
@@ -48,7 +48,7 @@ bool belongs_to_camera(const std::string& effect) {
                effect) > 0;
 }
 
-bool is_reference(const Candidate& candidate) {
+bool is_reference(const CandidateRender& candidate) {
     return candidate.rung.name == kReferenceRung;
 }
 
@@ -102,7 +102,7 @@ class Planner {
             full_ns_ += effect.ns_per_sample;
         }
         decide_stray_light(std::move(stray));
-        const auto cheapest = std::ranges::find_if(candidates(), [&](const Candidate& candidate) {
+        const auto cheapest = std::ranges::find_if(candidates(), [&](const CandidateRender& candidate) {
             return is_reference(candidate) || without(candidate).keeps(tolerance_);
         });
         budget_ = without(*cheapest);
@@ -206,10 +206,10 @@ class Planner {
     }
 
     /// The cheapest of these cameras that the check does not refuse.
-    void choose_camera(std::span<const Candidate> cameras) {
+    void choose_camera(std::span<const CandidateRender> cameras) {
         const Pilot::Pictures full = pilot_.render(pilot_.setup(), {}, pilot_.settings().seeds);
         const double stray_ns = kept_stray_ns();
-        for (const Candidate& candidate : cameras) {
+        for (const CandidateRender& candidate : cameras) {
             PlannedRender planned = plan_.render;
             planned.rung.model = candidate.rung.model;
             planned.rung.name = candidate.rung.name;
@@ -242,7 +242,7 @@ class Planner {
     }
 
     /// What is left out so far, and what that camera lacks.
-    [[nodiscard]] LeftOut without(const Candidate& candidate) const {
+    [[nodiscard]] LeftOut without(const CandidateRender& candidate) const {
         LeftOut left_out = budget_;
         for (const PlannedEffect& planned : plan_.effects) {
             if (belongs_to_camera(planned.effect.name) && std::ranges::count(candidate.has, planned.effect.name) == 0) {
@@ -252,7 +252,7 @@ class Planner {
         return left_out;
     }
 
-    void say_of_camera(const Candidate& candidate, double saves_percent) {
+    void say_of_camera(const CandidateRender& candidate, double saves_percent) {
         for (PlannedEffect& planned : plan_.effects) {
             const std::string& name = planned.effect.name;
             if (!planned.why.empty()) {
@@ -322,8 +322,8 @@ Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, co
 std::vector<PlannedRender> dearer_renders(const PlannedRender& planned, const render::SceneSetup& full) {
     std::vector<PlannedRender> dearer;
     const auto own = std::ranges::find(candidates(), planned.rung.name,
-                                       [](const Candidate& candidate) { return candidate.rung.name; });
-    for (const Candidate& candidate : std::span(own + 1, candidates().end())) {
+                                       [](const CandidateRender& candidate) { return candidate.rung.name; });
+    for (const CandidateRender& candidate : std::span(own + 1, candidates().end())) {
         dearer.push_back(planned);
         dearer.back().rung.name = candidate.rung.name;
         dearer.back().rung.model = candidate.rung.model;

@@ -16,7 +16,7 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr std::size_t kRings = 8;  // of image heights, that curves have a sample each of
+constexpr std::size_t kHeightRings = 8;  // of image heights, that curves have a sample each of
 
 const RungError& error_named(const std::string& key) {
     return *std::ranges::find(rung_errors(), key, &RungError::key);
@@ -112,13 +112,13 @@ draw::PlotChart pareto_chart(const RungError& error, const std::vector<MeasuredR
 /// The mean over rings of the frame, of what a point of it has.
 calibration::Curve ring_curve(const FieldErrors& errors, Measured FieldError::*what) {
     calibration::Curve curve;
-    for (std::size_t ring = 0; ring < kRings; ++ring) {
+    for (std::size_t ring = 0; ring < kHeightRings; ++ring) {
         double height = 0.0;
         double value = 0.0;
         double variance = 0.0;
         double count = 0.0;
         for (const FieldError& at : errors.at) {
-            if (std::min(kRings - 1, static_cast<std::size_t>(at.image_height * kRings)) == ring) {
+            if (std::min(kHeightRings - 1, static_cast<std::size_t>(at.image_height * kHeightRings)) == ring) {
                 height += at.image_height;
                 value += (at.*what).value;
                 variance += std::pow((at.*what).standard_error, 2);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kResidualPlot = "twins_radial_px";
 
-TwinSettings read_one(TomlTable& table, findings::ExperimentFile& file) {
+TwinSettings read_twins_table(TomlTable& table, findings::ExperimentFile& file) {
     TwinSettings twins;
     twins.name = findings::read_name(table);
     file.add_subject(table, "name", twins.name);
@@ -288,7 +288,7 @@ findings::Findings twins_of(const TwinSettings& settings, const findings::RunSet
 std::vector<findings::Study> read_twins(findings::ExperimentFile& file) {
     std::vector<findings::Study> studies;
     for (TomlTable& table : file.tables("twins")) {
-        TwinSettings twins = read_one(table, file);
+        TwinSettings twins = read_twins_table(table, file);
         std::string name = twins.name;
         studies.push_back({std::move(name), [twins = std::move(twins)](const findings::RunSettings& settings,
                                                                        const findings::RunProgress& progress,
