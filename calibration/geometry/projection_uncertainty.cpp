@@ -10,9 +10,6 @@
 namespace lensproof::calibration {
 namespace {
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-
 // Derivative of `function` (a pixel) by central differences; the projections are smooth, and a step of 1e-6 of the
 // parameter's own scale leaves nine digits. None where a side is not imaged.
 template <class Function>
@@ -130,6 +127,8 @@ std::optional<double> projection_uncertainty_px(const GeometryFit& fit, const Ve
     if (!total || !slope) {
         return std::nullopt;
     }
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
     Eigen::Matrix2d variance = Eigen::Matrix2d::Zero();
     const double weight = 1.0 / static_cast<double>(fit.views.size());
     for (const FittedView& view : fit.views) {
