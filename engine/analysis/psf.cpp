@@ -16,8 +16,6 @@ namespace lensproof::analysis {
 
 namespace {
 
-using Complex = std::complex<double>;
-
 constexpr double kMicrometre = 1e-3;  // mm
 
 double wavelength_mm(double wavelength_nm) {
@@ -73,13 +71,13 @@ double scale_of(const SampledPupil& pupil) {
 }
 
 /// The irradiance at any point, by the sum over the cells.
-double irradiance_at(const SampledPupil& pupil, const std::vector<Complex>& function, Vec2d point_um) {
+double irradiance_at(const SampledPupil& pupil, const std::vector<std::complex<double>>& function, Vec2d point_um) {
     const double turn = 2.0 * std::numbers::pi / wavelength_mm(pupil.wavelength_nm) * pupil.spacing * kMicrometre;
-    Complex sum = 0.0;
+    std::complex<double> sum = 0.0;
     for (int row = 0; row < pupil.size; ++row) {
-        Complex line = 0.0;
-        const Complex step = std::polar(1.0, turn * point_um.x);
-        Complex phase = 1.0;
+        std::complex<double> line = 0.0;
+        const std::complex<double> step = std::polar(1.0, turn * point_um.x);
+        std::complex<double> phase = 1.0;
         for (int column = 0; column < pupil.size; ++column) {
             line += function[pupil.cell(row, column)] * phase;
             phase *= step;
@@ -90,7 +88,7 @@ double irradiance_at(const SampledPupil& pupil, const std::vector<Complex>& func
 }
 
 /// Adds one wavelength's irradiance to the picture.
-void add_transform(Psf& psf, const SampledPupil& pupil, const std::vector<Complex>& function) {
+void add_transform(Psf& psf, const SampledPupil& pupil, const std::vector<std::complex<double>>& function) {
     const int size = psf.size;
     cv::Mat grid = cv::Mat::zeros(size, size, CV_64FC2);
     const int before = size / 2 - pupil.size / 2;
@@ -98,7 +96,7 @@ void add_transform(Psf& psf, const SampledPupil& pupil, const std::vector<Comple
         for (int column = 0; column < pupil.size; ++column) {
             // The checkerboard's signs move the zero of positions to the middle of the picture.
             const double sign = (row + column) % 2 == 0 ? 1.0 : -1.0;
-            const Complex value = sign * function[pupil.cell(row, column)];
+            const std::complex<double> value = sign * function[pupil.cell(row, column)];
             grid.at<cv::Vec2d>(before + row, before + column) = {value.real(), value.imag()};
         }
     }
@@ -166,7 +164,7 @@ double irradiance_at(const WaveletPart& part, double curvature, Vec2d point_um) 
     const double wavenumber = 2.0 * std::numbers::pi / wavelength_mm(part.wavelength_nm);
     const double c_by_index = curvature / part.index;
     const double c_square = part.index * curvature * dot(point, point);
-    Complex sum = 0.0;
+    std::complex<double> sum = 0.0;
     for (const Wavelet& wavelet : part.wavelets) {
         const double along = wavelet.towards.x * point.x + wavelet.towards.y * point.y;
         const double distance = std::sqrt(1.0 + c_by_index * (2.0 * along + c_square));  // over the radius
@@ -206,7 +204,7 @@ Psf fft_psf(const PolychromaticField& field, const FftPsfSettings& settings) {
     }
     Psf psf = empty_psf(size, settings.pixel_um > 0.0 ? settings.pixel_um : finest);
     std::vector<SampledPupil> pupils;
-    std::vector<std::vector<Complex>> functions;
+    std::vector<std::vector<std::complex<double>>> functions;
     for (const PolychromaticField::Part& part : field.parts) {
         const double spacing = wavelength_mm(part.wavelength_nm) / (size * psf.pixel_um * kMicrometre);
         if (pupil_cells(cosine_box(field, part).width(), spacing) > size) {

@@ -12,8 +12,6 @@ namespace lensproof::render {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Whose turn it is among passes, and in which tiles.
 class Turns {
   public:
@@ -128,8 +126,10 @@ RenderEnd render_passes(std::span<RenderState> states, std::span<const Render> r
     if (states.size() == 1 && !renders.front().lands_anywhere) {
         return render_progressively(states.front(), renders.front().renderer, goal, control);
     }
-    const Clock::time_point start = Clock::now();
-    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
     Turns turns(states, renders, goal.noise);
     const double done_before = turns.fraction_done();
     RenderReport before;  // of the turns so far

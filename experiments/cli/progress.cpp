@@ -12,18 +12,19 @@ namespace lensproof::cli {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 30;
 
 }  // namespace
 
-double seconds_since(Clock::time_point then) {
-    return std::chrono::duration<double>(Clock::now() - then).count();
+double seconds_since(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
 ProgressBar::ProgressBar(std::string_view label, bool quiet)
-    : label_(visible(label)), shown_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(Clock::now()) {}
+    : label_(visible(label)),
+      shown_(!quiet && ::isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()) {}
 
 ProgressBar::~ProgressBar() {
     if (shown_) {
@@ -32,10 +33,10 @@ ProgressBar::~ProgressBar() {
 }
 
 bool ProgressBar::is_due() {
-    if (!shown_ || Clock::now() - drawn_ < kRedraw) {
+    if (!shown_ || std::chrono::steady_clock::now() - drawn_ < kRedraw) {
         return false;
     }
-    drawn_ = Clock::now();
+    drawn_ = std::chrono::steady_clock::now();
     return true;
 }
 
