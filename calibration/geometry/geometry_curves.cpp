@@ -9,7 +9,7 @@ namespace lensproof::calibration {
 namespace {
 
 // A quantity that the model says about the radius `r`, px; none where it says nothing.
-using Quantity = std::optional<double> (*)(const CameraModel& model, double r);
+using RadialQuantity = std::optional<double> (*)(const CameraModel& model, double r);
 
 std::optional<double> angle_deg(const CameraModel& model, double r) {
     const auto angle = field_angle_rad(model, r);
@@ -34,7 +34,7 @@ std::optional<double> equidistant_percent(const CameraModel& model, double r) {
 
 // Standard error of `quantity` by the delta method. Central differences over a tenth of each standard error: far above
 // rounding and, because a fit with large errors is refused earlier, far inside the model's linear range.
-double standard_error(const GeometryFit& fit, Quantity quantity, double r) {
+double standard_error(const GeometryFit& fit, RadialQuantity quantity, double r) {
     const std::vector<double> centre = parameters(fit.model);
     const std::size_t count = centre.size();
     std::vector<double> gradient(count, 0.0);
@@ -67,7 +67,7 @@ double standard_error(const GeometryFit& fit, Quantity quantity, double r) {
     return std::sqrt(std::max(variance, 0.0));
 }
 
-Curve curve_of(const GeometryFit& fit, double half_diagonal_px, Quantity quantity) {
+Curve curve_of(const GeometryFit& fit, double half_diagonal_px, RadialQuantity quantity) {
     Curve curve;
     curve.covered_image_height = fit.covered_radius_px / half_diagonal_px;
     for (const double height : standard_image_heights()) {

@@ -17,7 +17,7 @@ using Eigen::Index;
 
 constexpr Index kHomography = 8;  // row by row, the last element being 1
 constexpr Index kMostTerms = 3;
-constexpr std::size_t kMostViews = 8;  // the more points, the rather; every view brings its own eight unknowns
+constexpr std::size_t kMostPlaneViews = 8;  // the more points, the rather; every view brings its own eight unknowns
 constexpr double kPlaneOutlierSigmas = 6.0;
 constexpr double kLeastPlaneSigma_px = 0.005;  // no detector is better
 constexpr int kSteps = 30;
@@ -149,7 +149,7 @@ std::vector<PlaneView> in_units(const std::vector<ChartView>& views, const Vec2d
         }
     }
     std::ranges::stable_sort(result, std::greater<>(), [](const PlaneView& view) { return view.chart.size(); });
-    result.resize(std::min(result.size(), kMostViews));
+    result.resize(std::min(result.size(), kMostPlaneViews));
     return result;
 }
 

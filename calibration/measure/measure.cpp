@@ -24,7 +24,7 @@ namespace lensproof::calibration {
 namespace {
 
 // A place known to no better than this of half the diagonal: as where a fit refuses a principal point.
-constexpr double kUnknown = 0.05;
+constexpr double kUnknownPlace = 0.05;
 
 struct Geometry {
     GeometryFit fit;
@@ -129,7 +129,7 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
     for (const std::optional<double>& uncertainty : profile.geometry->uncertainty->far_px) {
         worst = std::max(worst, uncertainty.value_or(0.0));
     }
-    if (worst > kUnknown * half_diagonal_px(profile)) {
+    if (worst > kUnknownPlace * half_diagonal_px(profile)) {
         const bool is_far = std::ranges::all_of(charts, &ChartView::is_far);
         profile.warnings.push_back(fmt::format(
             "the pictures do not say what the camera does in all of the frame: a place is known to ± {:.3g} px "

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFullFrameDiagonal_mm = 43.266615305567875;
+constexpr double kEquivalentDiagonal_mm = 43.266615305567875;
 constexpr double kWide_deg = 25.0;             // half the field from which on lenses without distortion are rare
 constexpr double kNoDistortion_percent = 0.1;  // what a corrected picture may have left
 constexpr double kFocalLengthMargin = 0.06;    // of cameras' own figures: rounding, and breathing at close focus
@@ -251,7 +251,7 @@ std::vector<std::string> suspicions_of(const Profile& profile) {
     if (profile.source.notes && profile.source.notes->equivalent_focal_length_mm) {
         const double stated = *profile.source.notes->equivalent_focal_length_mm;
         const double measured =
-            focal_length_px(profile.geometry->model) * kFullFrameDiagonal_mm / (2.0 * half_diagonal_px(profile));
+            focal_length_px(profile.geometry->model) * kEquivalentDiagonal_mm / (2.0 * half_diagonal_px(profile));
         if (std::abs(measured - stated) > kFocalLengthMargin * stated + 0.5) {
             signs.push_back(
                 fmt::format("the measured focal length is {:.1f} mm on 36 × 24 mm, the camera states {:g} "

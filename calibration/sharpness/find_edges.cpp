@@ -29,7 +29,7 @@ struct Stretch {
     double merit = 0.0;
 };
 
-using Profile = std::array<double, 2 * kWidest_px + 1>;
+using ProfileAcross = std::array<double, 2 * kWidest_px + 1>;
 
 std::size_t place_of(int distance) {
     const int place = distance + kWidest_px;
@@ -37,8 +37,8 @@ std::size_t place_of(int distance) {
 }
 
 // The mean light at each distance across, from -kWidest_px on.
-Profile profile_across(const cv::Mat& plane, const EdgeRegion& region) {
-    Profile light{};
+ProfileAcross profile_across(const cv::Mat& plane, const EdgeRegion& region) {
+    ProfileAcross light{};
     const Vec2d normal{-region.along.y, region.along.x};
     const int reach = static_cast<int>(region.half_length_px);
     for (int d = -kWidest_px; d <= kWidest_px; ++d) {
@@ -64,7 +64,7 @@ struct Tones {
 };
 
 // The tones between 0.6 and 1 of the width on either side.
-Tones tones(const Profile& light, int width) {
+Tones tones(const ProfileAcross& light, int width) {
     const int from = static_cast<int>(std::ceil(0.6 * width));
     const auto at = [&](int d) { return light[place_of(d)]; };
     Tones result;
@@ -83,7 +83,7 @@ Tones tones(const Profile& light, int width) {
 
 // As wide as both tones are even; none where they are nowhere.
 std::optional<Stretch> widened(const cv::Mat& plane, EdgeRegion region) {
-    const Profile light = profile_across(plane, region);
+    const ProfileAcross light = profile_across(plane, region);
     for (int width = kWidest_px; width >= kNarrowest_px; --width) {
         const Tones found = tones(light, width);
         if (found.even && found.contrast() > kLeastToneContrast) {

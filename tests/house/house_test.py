@@ -12,7 +12,8 @@
 - A namespace a file of tests, named as the file: they are compiled several to a text, some with another room's.
 - No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
   namespace are linked into one program, which is undefined behaviour that no linker tells.
-- An unnamed namespace's name is alone in its room: sources are compiled several to a text, one more decides which.
+- An unnamed namespace's name is alone in its room, headers' included: sources are compiled several to a text, and one
+  more decides which.
 
 universal-ctags finds the definitions; without it these two parts are skipped, exit status 77.
 
@@ -151,12 +152,16 @@ def defined_twice(home):
 
 
 def unnamed_twice(home):
-    places = collections.defaultdict(set)
-    for tag, file in definitions(home, [file for file in sources(home) if file.suffix == ".cpp"]):
+    own, rooms = collections.defaultdict(set), collections.defaultdict(set)
+    for tag, file in definitions(home, sources(home)):
+        room = namespace_of(file.parent)
+        name = f"{room}::{tag['name']}{parameters_of(tag)}"
         if "__anon" in tag.get("scope", ""):
-            places[f"{namespace_of(file.parent)}::{tag['name']}{parameters_of(tag)}"].add(str(file))
-    return [f"{name} has no namespace of its own in {' and in '.join(sorted(files))}"
-            for name, files in sorted(places.items()) if len(files) > 1]
+            own[name].add(str(file))
+        elif file.suffix == ".h" and tag.get("scope") == room:
+            rooms[name].add(str(file))
+    return [f"{name} has no namespace of its own in {' and in '.join(sorted(files | rooms[name]))}"
+            for name, files in sorted(own.items()) if len(files | rooms[name]) > 1]
 
 
 def planted(check, files, found):
@@ -199,6 +204,10 @@ def main():
             planted(unnamed_twice, {f"engine/{file}.cpp": "namespace lensproof {\nnamespace {\n" + text + "\n}\n}\n"
                                     for file in ("optics/a", "optics/b", "scene/c")},
                     "has no namespace of its own in engine/optics/a.cpp and in engine/optics/b.cpp")
+            planted(unnamed_twice, {"engine/optics/a.cpp": "namespace lensproof::optics {\nnamespace {\n" + text + "\n}\n}\n",
+                                    "engine/optics/b.h": "namespace lensproof::optics {\n" + text + "\n}\n",
+                                    "engine/scene/b.h": "namespace lensproof::scene {\n" + text + "\n}\n"},
+                    "has no namespace of its own in engine/optics/a.cpp and in engine/optics/b.h")
         faults += defined_twice(home) + unnamed_twice(home)
     print("\n".join(faults) or f"{len(sources(home))} sources, {len(included_folders(home))} folders: nothing found")
     if faults:

@@ -12,7 +12,7 @@
 namespace lensproof::studies {
 
 namespace {
-constexpr double kWidth = 900.0;
+constexpr double kDrawingWidth = 900.0;
 constexpr double kMargin = 24.0;
 constexpr double kTitle = 26.0;
 
@@ -63,7 +63,7 @@ draw::SectionView view_of(const draw::SectionGeometry& geometry, const Passage& 
     view.sensor_half_height = passage.circle_mm;
     view.box.hold({geometry.image_z, passage.circle_mm});
     view.box.hold({geometry.image_z, -passage.circle_mm});
-    view.scale = std::min((kWidth - 2.0 * kMargin) / view.box.width(), 300.0 / view.box.height());
+    view.scale = std::min((kDrawingWidth - 2.0 * kMargin) / view.box.width(), 300.0 / view.box.height());
     return view;
 }
 
@@ -88,9 +88,9 @@ findings::Picture section_drawing(const Passage& passage) {
             .caption =
                 "Paths from four heights on the sensor (right) through the section; those that a rim stops "
                 "end there",
-            .width = kWidth,
+            .width = kDrawingWidth,
             .height = height,
-            .bytes = svg.document(kWidth, height)};
+            .bytes = svg.document(kDrawingWidth, height)};
 }
 
 Json percentages(const std::array<double, kPassageRings>& fractions) {

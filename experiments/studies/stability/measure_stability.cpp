@@ -100,15 +100,15 @@ double distance(const Path<T>& a, const Path<Exact>& exact) {
 }
 
 /// One ray in a hundred digits: its path, how far rounding the input moves it, and whether that may change its fate.
-struct Judgement {
+struct RayJudgement {
     Path<Exact> path;
     double conditioning_mm = 0.0;
     bool is_at_a_change = false;
 };
 
-Judgement judge(const optics::TraceLens<Exact>& lens, const Ray<double>& given, std::mt19937_64& random) {
+RayJudgement judge(const optics::TraceLens<Exact>& lens, const Ray<double>& given, std::mt19937_64& random) {
     const Ray<Exact> ray = optics::convert_ray<Exact>(given);
-    Judgement judgement{.path = path_of(lens, ray)};
+    RayJudgement judgement{.path = path_of(lens, ray)};
     Jitter<Exact> by_half_an_ulp(kHalfUlp, random);
     Jitter<Exact> by_more(kConditioningFactor * kHalfUlp, random);
     for (int draw = 0; draw < kDraws; ++draw) {
@@ -146,7 +146,7 @@ void measure_point(StabilityPoint& point, const StabilityCase& given, std::mt199
     const optics::RayBatch<float> packets = traced_in_packets(lens_in_float, float_rays);
     point.rays = static_cast<int>(given.rays.size());
     for (std::size_t i = 0; i < given.rays.size(); ++i) {
-        const Judgement judged = judge(exact_lens, given.rays[i], random);
+        const RayJudgement judged = judge(exact_lens, given.rays[i], random);
         const bool at_a_change = judged.is_at_a_change;
         point.at_a_change += at_a_change ? 1 : 0;
 

@@ -22,7 +22,7 @@ namespace lensproof::studies {
 namespace {
 
 constexpr double kLuminance_cd_m2 = 1000.0;
-constexpr double kWhite = 0.7;  // about what the twin's white is to be, full scale 1
+constexpr double kTwinWhite = 0.7;  // about what the twin's white is to be, full scale 1
 constexpr double kIso = 100.0;
 
 formats::Image rendered(const TwinSettings& settings, const FittedTwin& fitted, const PhotoSet& photos,
@@ -163,7 +163,7 @@ render::CameraSettings camera_settings(const TwinSettings& settings, const Fitte
                      .axis_from_middle_px = fitted.camera.axis_from_middle_px};
     // The illuminance of a white far off, π L / 4 N², for as long as makes it so bright.
     const double illuminance = std::numbers::pi * kLuminance_cd_m2 / (4.0 * fitted.f_number * fitted.f_number);
-    camera.exposure = {.time_s = kWhite * spectral::saturation_exposure_lx_s(kIso) / illuminance, .iso = kIso};
+    camera.exposure = {.time_s = kTwinWhite * spectral::saturation_exposure_lx_s(kIso) / illuminance, .iso = kIso};
     camera.response = settings.response;
     return camera;
 }
