@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -11,12 +10,12 @@
 #include "calibration/detection/pixel_noise.h"
 #include "calibration/detection/spot_centroid.h"
 #include "calibration/detection/working_copy.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWindowShare = 0.4;   // half window of the distance to the nearest corner
 constexpr int kSmallestWindow_px = 2;  // half window: 5 × 5 pixels
 constexpr int kLargestWindow_px = 14;  // half window; more pixels than noise asks for, and lines bend

@@ -34,16 +34,16 @@ Vec3d direction(double angle, double azimuth_x, double azimuth_y) {
 }
 
 // Angles whose radii enclose the one looked for.
-struct Bracket {
+struct AngleBracket {
     double low = 0.0;
     double high = 0.0;
 };
 
 // Walks outwards until r(θ) passes `radius`; none when it folds back or ends before.
-std::optional<Bracket> bracket_angle(const CameraModel& model, double radius) {
+std::optional<AngleBracket> bracket_angle(const CameraModel& model, double radius) {
     const double end = largest_angle(model);
     double step = kScanStep;
-    Bracket bracket;
+    AngleBracket bracket;
     double previous = 0.0;
     for (double reached = 0.0; reached < radius;) {
         const double next = std::min(bracket.high + step, end);
@@ -65,7 +65,7 @@ std::optional<Bracket> bracket_angle(const CameraModel& model, double radius) {
 }
 
 // False position with the Illinois modification (Dowell & Jarratt 1971): as safe as halving, and superlinear.
-double angle_within(const CameraModel& model, double radius, Bracket bracket) {
+double angle_within(const CameraModel& model, double radius, AngleBracket bracket) {
     double below = radius_px(model, bracket.low) - radius;
     double above = radius_px(model, bracket.high) - radius;
     double angle = bracket.high;

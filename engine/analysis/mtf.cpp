@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <map>
 #include <numbers>
 
@@ -13,8 +14,6 @@
 namespace lensproof::analysis {
 
 namespace {
-
-using Complex = std::complex<double>;
 
 enum class Axis { x, y };
 
@@ -26,24 +25,24 @@ void check_frequencies(std::span<const double> frequencies) {
     }
 }
 
-Complex turned(double cycles) {
+std::complex<double> turned(double cycles) {
     return std::polar(1.0, 2.0 * std::numbers::pi * cycles);
 }
 
 /// The transfer function of one wavelength along one axis.
 class Transfer {
   public:
-    Transfer(const SampledPupil& pupil, const std::vector<Complex>& function, Axis axis, double centroid)
+    Transfer(const SampledPupil& pupil, const std::vector<std::complex<double>>& function, Axis axis, double centroid)
         : pupil_(pupil), function_(function), axis_(axis), centroid_(centroid) {}
 
-    [[nodiscard]] Complex at(double frequency) {
+    [[nodiscard]] std::complex<double> at(double frequency) {
         const double shear = frequency * 1e-6 * pupil_.wavelength_nm / pupil_.spacing;  // in cells
         if (!(shear < pupil_.size)) {
             return 0.0;
         }
         // Four whole shears around it. Zero has a cusp and is never in the middle.
         const int first = std::max(0, static_cast<int>(shear) - 1);
-        Complex sum = 0.0;
+        std::complex<double> sum = 0.0;
         for (int i = 0; i < 4; ++i) {
             double factor = 1.0;
             for (int k = 0; k < 4; ++k) {
@@ -58,7 +57,7 @@ class Transfer {
   private:
     /// Normalised by the beam's energy, which is its value at 0: cells at the rim, which the product of two fractions
     /// would count too little there, are whole in the energy.
-    Complex autocorrelation(int shear) {
+    std::complex<double> autocorrelation(int shear) {
         if (shear == 0) {
             return 1.0;
         }
@@ -69,24 +68,25 @@ class Transfer {
         const int rows = axis_ == Axis::y ? pupil_.size - shear : pupil_.size;
         const int columns = axis_ == Axis::x ? pupil_.size - shear : pupil_.size;
         const std::size_t apart = axis_ == Axis::y ? pupil_.cell(shear, 0) : pupil_.cell(0, shear);
-        Complex sum = 0.0;
+        std::complex<double> sum = 0.0;
         for (int row = 0; row < rows; ++row) {
             for (int column = 0; column < columns; ++column) {
                 const std::size_t cell = pupil_.cell(row, column);
                 // Written out: the product of std::complex looks for infinities.
-                const Complex& a = function_[cell + apart];
-                const Complex& b = function_[cell];
-                sum += Complex(a.real() * b.real() + a.imag() * b.imag(), a.imag() * b.real() - a.real() * b.imag());
+                const std::complex<double>& a = function_[cell + apart];
+                const std::complex<double>& b = function_[cell];
+                sum += std::complex<double>(a.real() * b.real() + a.imag() * b.imag(),
+                                            a.imag() * b.real() - a.real() * b.imag());
             }
         }
         return known_[shear] = sum * (pupil_.spacing * pupil_.spacing / pupil_.energy);
     }
 
     const SampledPupil& pupil_;
-    const std::vector<Complex>& function_;
+    const std::vector<std::complex<double>>& function_;
     Axis axis_;
     double centroid_;
-    std::map<int, Complex> known_;
+    std::map<int, std::complex<double>> known_;
 };
 
 /// The rays' mean position, mm from the image point.
@@ -134,8 +134,8 @@ std::vector<SampledPupil> sample_pupils(const PolychromaticField& field, int sam
 
 MtfCurve diffraction_mtf(std::span<const SampledPupil> pupils, std::span<const double> frequencies, MtfKind kind) {
     MtfCurve curve = empty_curve(frequencies);
-    std::vector<Complex> tangential(frequencies.size(), 0.0);
-    std::vector<Complex> sagittal(frequencies.size(), 0.0);
+    std::vector<std::complex<double>> tangential(frequencies.size(), 0.0);
+    std::vector<std::complex<double>> sagittal(frequencies.size(), 0.0);
     const bool is_perfect = kind == MtfKind::diffraction_limited;
     for (const SampledPupil& pupil : pupils) {
         const bool is_usable = pupil.status == PupilStatus::ok || (is_perfect && pupil.status == PupilStatus::aliased);
@@ -143,7 +143,7 @@ MtfCurve diffraction_mtf(std::span<const SampledPupil> pupils, std::span<const d
             curve.status = pupil.status;
             return curve;
         }
-        const std::vector<Complex> function = pupil_function(pupil, is_perfect);
+        const std::vector<std::complex<double>> function = pupil_function(pupil, is_perfect);
         const Vec2d middle = is_perfect ? Vec2d{} : centroid(pupil);
         Transfer along_y(pupil, function, Axis::y, middle.y);
         Transfer along_x(pupil, function, Axis::x, middle.x);
@@ -173,8 +173,8 @@ MtfCurve geometric_mtf(const PolychromaticField& field, std::span<const double> 
         throw InputError("a geometric MTF needs at least 3 azimuths and a ring");
     }
     MtfCurve curve = empty_curve(frequencies);
-    std::vector<Complex> tangential(frequencies.size(), 0.0);
-    std::vector<Complex> sagittal(frequencies.size(), 0.0);
+    std::vector<std::complex<double>> tangential(frequencies.size(), 0.0);
+    std::vector<std::complex<double>> sagittal(frequencies.size(), 0.0);
     double farthest = 0.0;  // from one ray to the next one along a radius, mm
     for (const PolychromaticField::Part& part : field.parts) {
         double energy = 0.0;
@@ -196,8 +196,8 @@ MtfCurve geometric_mtf(const PolychromaticField& field, std::span<const double> 
             energy += node.weight;
         }
         for (std::size_t i = 0; i < frequencies.size(); ++i) {
-            Complex along_y = 0.0;
-            Complex along_x = 0.0;
+            std::complex<double> along_y = 0.0;
+            std::complex<double> along_x = 0.0;
             for (const auto& [position, weight] : hits) {
                 along_y += weight * turned(-frequencies[i] * position.y);
                 along_x += weight * turned(-frequencies[i] * position.x);

@@ -7,17 +7,16 @@ namespace lensproof::optics {
 
 namespace {
 
-using Complex = std::complex<double>;
 using std::numbers::pi;
 
 /// exp(z²) erfc(z) on the ray arg z = π/4. Below |z| = 2 by the series of erf (Abramowitz and Stegun, 7.1.6, whose
 /// terms do not cancel there), beyond by the continued fraction (7.1.14).
-Complex scaled_erfc(double modulus) {
-    const Complex z = std::polar(modulus, pi / 4);
-    const Complex z2(0.0, modulus * modulus);
+std::complex<double> scaled_erfc(double modulus) {
+    const std::complex<double> z = std::polar(modulus, pi / 4);
+    const std::complex<double> z2(0.0, modulus * modulus);
     if (modulus < 2.0) {
-        Complex term = z;
-        Complex sum = z;
+        std::complex<double> term = z;
+        std::complex<double> sum = z;
         for (int n = 1; std::abs(term) > 1e-17 * std::abs(sum); ++n) {
             term *= 2.0 * z2 / (2.0 * n + 1.0);
             sum += term;
@@ -25,7 +24,7 @@ Complex scaled_erfc(double modulus) {
         return std::exp(z2) - 2.0 / std::sqrt(pi) * sum;
     }
     // 1/√π · 1/(z + (1/2)/(z + 1/(z + (3/2)/(z + …)))), from far enough inside; at |z| = 2 that is 120 terms.
-    Complex rest = z;
+    std::complex<double> rest = z;
     for (int n = 150; n > 0; --n) {
         rest = z + 0.5 * n / rest;
     }
@@ -35,21 +34,22 @@ Complex scaled_erfc(double modulus) {
 /// Both theories have the same two terms, of the light that goes straight on and of that which is mirrored.
 template <class Term>
 EdgeCoefficients coefficients(const EdgeAngles& angles, double wavenumber, const Term& term) {
-    const Complex factor = -std::polar(1.0, -pi / 4) / (2.0 * std::sqrt(2.0 * pi * wavenumber) * std::sin(angles.cone));
-    const Complex straight = term(std::cos((angles.diffraction - angles.incidence) / 2.0));
-    const Complex mirrored = term(std::cos((angles.diffraction + angles.incidence) / 2.0));
+    const std::complex<double> factor =
+        -std::polar(1.0, -pi / 4) / (2.0 * std::sqrt(2.0 * pi * wavenumber) * std::sin(angles.cone));
+    const std::complex<double> straight = term(std::cos((angles.diffraction - angles.incidence) / 2.0));
+    const std::complex<double> mirrored = term(std::cos((angles.diffraction + angles.incidence) / 2.0));
     return {.soft = factor * (straight - mirrored), .hard = factor * (straight + mirrored)};
 }
 
 }  // namespace
 
-Complex transition_function(double x) {
+std::complex<double> transition_function(double x) {
     // The integral is √π/2 · exp(−iπ/4) erfc(exp(iπ/4) √x).
     return std::polar(std::sqrt(pi * x), pi / 4) * scaled_erfc(std::sqrt(x));
 }
 
 EdgeCoefficients keller_coefficients(const EdgeAngles& angles, double wavenumber) {
-    return coefficients(angles, wavenumber, [](double cosine) { return Complex(1.0 / cosine); });
+    return coefficients(angles, wavenumber, [](double cosine) { return std::complex<double>(1.0 / cosine); });
 }
 
 EdgeCoefficients uniform_coefficients(const EdgeAngles& angles, double wavenumber, double distance) {

@@ -1,15 +1,10 @@
 #include "engine/optics/frame.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "engine/base/angle.h"
 
 namespace lensproof::optics {
-
-namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-}  // namespace
 
 Frame Frame::turned(std::size_t about, double angle_deg) const {
     const double sine = std::sin(angle_deg * kDegree);

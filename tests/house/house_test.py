@@ -12,8 +12,8 @@
 - A namespace a file of tests, named as the file: they are compiled several to a text, some with another room's.
 - No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
   namespace are linked into one program, which is undefined behaviour that no linker tells.
-- An unnamed namespace's name is alone in its room, headers' included: sources are compiled several to a text, and one
-  more decides which.
+- An unnamed namespace's name is alone in its room, its headers' and engine/base's included: sources are compiled
+  several to a text, and one more decides which.
 
 universal-ctags finds the definitions; without it these two parts are skipped, exit status 77.
 
@@ -152,16 +152,17 @@ def defined_twice(home):
 
 
 def unnamed_twice(home):
-    own, rooms = collections.defaultdict(set), collections.defaultdict(set)
+    own, headers = collections.defaultdict(set), collections.defaultdict(set)
     for tag, file in definitions(home, sources(home)):
-        room = namespace_of(file.parent)
-        name = f"{room}::{tag['name']}{parameters_of(tag)}"
-        if "__anon" in tag.get("scope", ""):
-            own[name].add(str(file))
-        elif file.suffix == ".h" and tag.get("scope") == room:
-            rooms[name].add(str(file))
-    return [f"{name} has no namespace of its own in {' and in '.join(sorted(files | rooms[name]))}"
-            for name, files in sorted(own.items()) if len(files | rooms[name]) > 1]
+        scope, name = tag.get("scope", ""), tag["name"] + parameters_of(tag)
+        if "__anon" in scope:
+            own[namespace_of(file.parent), name].add(str(file))
+        elif file.suffix == ".h":
+            headers[scope, name].add(str(file))
+    places = {(room, name): files | headers[room, name] | headers["lensproof", name]
+              for (room, name), files in own.items()}
+    return [f"{room}::{name} has no namespace of its own in {' and in '.join(sorted(files))}"
+            for (room, name), files in sorted(places.items()) if len(files) > 1]
 
 
 def planted(check, files, found):
@@ -204,10 +205,11 @@ def main():
             planted(unnamed_twice, {f"engine/{file}.cpp": "namespace lensproof {\nnamespace {\n" + text + "\n}\n}\n"
                                     for file in ("optics/a", "optics/b", "scene/c")},
                     "has no namespace of its own in engine/optics/a.cpp and in engine/optics/b.cpp")
-            planted(unnamed_twice, {"engine/optics/a.cpp": "namespace lensproof::optics {\nnamespace {\n" + text + "\n}\n}\n",
-                                    "engine/optics/b.h": "namespace lensproof::optics {\n" + text + "\n}\n",
-                                    "engine/scene/b.h": "namespace lensproof::scene {\n" + text + "\n}\n"},
-                    "has no namespace of its own in engine/optics/a.cpp and in engine/optics/b.h")
+            for header, room in (("engine/optics/b.h", "lensproof::optics"), ("engine/base/b.h", "lensproof")):
+                planted(unnamed_twice,
+                        {"engine/optics/a.cpp": f"namespace lensproof {{\nnamespace {{\n{text}\n}}\n}}\n",
+                         header: f"namespace {room} {{\n{text}\n}}\n",
+                         "engine/scene/b.h": f"namespace lensproof::scene {{\n{text}\n}}\n"}, header)
         faults += defined_twice(home) + unnamed_twice(home)
     print("\n".join(faults) or f"{len(sources(home))} sources, {len(included_folders(home))} folders: nothing found")
     if faults:

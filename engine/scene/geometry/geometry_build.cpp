@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/scene/geometry/geometry_data.h"
 
@@ -13,7 +14,6 @@ namespace lensproof::scene {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e12;
 
 void enclose(Box& box, const Vec3d& point) {

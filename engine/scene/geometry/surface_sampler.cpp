@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <boost/math/special_functions/ellint_rg.hpp>
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/scene/geometry/geometry_data.h"
 
 namespace lensproof::scene {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// R_G is the symmetric elliptic integral (DLMF 19.33.1).
 double ellipsoid_area(const Vec3d& semi_axes) {
