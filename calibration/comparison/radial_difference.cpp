@@ -28,7 +28,7 @@ Sums operator-(Sums sums, const Sums& others) {
     return sums;
 }
 
-void add(Sums& sums, const Vec3d& one, const Vec3d& other, double difference) {
+void add_pixel(Sums& sums, const Vec3d& one, const Vec3d& other, double difference) {
     const std::array<double, kSums> terms{luminance(one), one.x,   one.y,   one.z,      luminance(other),
                                           other.x,        other.y, other.z, difference, 1.0};
     for (std::size_t i = 0; i < kSums; ++i) {
@@ -97,8 +97,8 @@ std::map<std::string, Curve> radial_differences(const formats::Image& a, const f
             const double turn = std::atan2(y - middle_y, x - middle_x) / (2.0 * std::numbers::pi) + 0.5;
             const int ring = std::min(kRings - 1, static_cast<int>(height * kRings));
             const int sector = std::min(kSectors - 1, static_cast<int>(turn * kSectors));
-            add(rings[static_cast<std::size_t>(ring)][static_cast<std::size_t>(sector)], rgb_at(a, pixel),
-                rgb_at(b, pixel), static_cast<double>(colour_difference.pixels[pixel]));
+            add_pixel(rings[static_cast<std::size_t>(ring)][static_cast<std::size_t>(sector)], rgb_at(a, pixel),
+                      rgb_at(b, pixel), static_cast<double>(colour_difference.pixels[pixel]));
         }
     }
     std::vector<std::string> names{"brightness_ev", "ciede2000"};

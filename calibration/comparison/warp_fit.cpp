@@ -14,9 +14,9 @@ namespace {
 
 constexpr int kMostTiles = 8;  // a side
 constexpr int kSmallestTile_px = 16;
-constexpr int kContrast = kMostWarpTerms;
-constexpr int kOffset = kMostWarpTerms + 1;
-constexpr int kValue = kMostWarpTerms + 2;
+constexpr int kContrastColumn = kMostWarpTerms;
+constexpr int kOffsetColumn = kMostWarpTerms + 1;
+constexpr int kValueColumn = kMostWarpTerms + 2;
 constexpr double kNothing = 1e-10;  // of the largest, beside which rounding is all
 
 using Column = Eigen::Matrix<double, kMostWarpTerms + 3, 1>;
@@ -29,7 +29,7 @@ WarpTile summed(const WarpPair& pair, const Warp& warp, const FrameScale& frame,
     WarpTile tile;
     tile.products.setZero();
     Column column;
-    column(kOffset) = 1.0;
+    column(kOffsetColumn) = 1.0;
     const formats::Image& a = pair.a;
     for (int y = range.y0; y < range.y1; ++y) {
         for (int x = range.x0; x < range.x1; ++x) {
@@ -48,8 +48,8 @@ WarpTile summed(const WarpPair& pair, const Warp& warp, const FrameScale& frame,
                 const Vec2d& move = moves[static_cast<std::size_t>(k)];
                 column(k) = gradient.x * move.x + gradient.y * move.y;
             }
-            column(kContrast) = static_cast<double>(a.at(x, y, 0));
-            column(kValue) = pair.b.at(place);
+            column(kContrastColumn) = static_cast<double>(a.at(x, y, 0));
+            column(kValueColumn) = pair.b.at(place);
             tile.products.noalias() += column * column.transpose();
             tile.middle = tile.middle + u;
             tile.pixels += 1.0;
@@ -65,8 +65,8 @@ WarpTile summed(const WarpPair& pair, const Warp& warp, const FrameScale& frame,
 std::vector<int> columns_of(int terms) {
     std::vector<int> columns(static_cast<std::size_t>(terms));
     std::iota(columns.begin(), columns.end(), 0);
-    columns.push_back(kContrast);
-    columns.push_back(kOffset);
+    columns.push_back(kContrastColumn);
+    columns.push_back(kOffsetColumn);
     return columns;
 }
 
@@ -114,8 +114,8 @@ WarpStep warp_step(const std::vector<WarpTile>& tiles, WarpModel model) {
     double pixels = 0.0;
     for (const WarpTile& tile : tiles) {
         normal += tile.products(columns, columns);
-        right += tile.products(columns, kValue);
-        squares += tile.products(kValue, kValue);
+        right += tile.products(columns, kValueColumn);
+        squares += tile.products(kValueColumn, kValueColumn);
         pixels += tile.pixels;
     }
     if (!tells_all(normal)) {
@@ -131,7 +131,7 @@ WarpStep warp_step(const std::vector<WarpTile>& tiles, WarpModel model) {
     const auto count = static_cast<double>(tiles.size());
     if (count >= 3.0 * static_cast<double>(size)) {
         for (const WarpTile& tile : tiles) {
-            const Eigen::VectorXd pull = tile.products(columns, kValue) - tile.products(columns, columns) * found;
+            const Eigen::VectorXd pull = tile.products(columns, kValueColumn) - tile.products(columns, columns) * found;
             scatter += pull * pull.transpose();
         }
         scatter *= count / (count - static_cast<double>(size));
@@ -146,8 +146,8 @@ WarpStep warp_step(const std::vector<WarpTile>& tiles, WarpModel model) {
 
 std::vector<TileShift> tile_shifts(const std::vector<WarpTile>& tiles, double contrast, const FrameScale& frame) {
     const std::vector<int> shifts{0, 1};
-    const std::vector<int> light{kContrast, kOffset};
-    const std::vector<int> all{0, 1, kContrast, kOffset};
+    const std::vector<int> light{kContrastColumn, kOffsetColumn};
+    const std::vector<int> all{0, 1, kContrastColumn, kOffsetColumn};
     std::vector<TileShift> result;
     for (const WarpTile& tile : tiles) {
         const Eigen::Matrix2d cross = tile.products(shifts, light);
@@ -158,7 +158,7 @@ std::vector<TileShift> tile_shifts(const std::vector<WarpTile>& tiles, double co
         }
         const Eigen::Matrix2d taken = cross * of_light.inverse();
         const Eigen::Matrix2d known = of_shift - taken * cross.transpose();
-        const Eigen::Vector2d right = tile.products(shifts, kValue) - taken * tile.products(light, kValue);
+        const Eigen::Vector2d right = tile.products(shifts, kValueColumn) - taken * tile.products(light, kValueColumn);
         // Along an edge nothing is known: the step stays 0 there.
         const SymmetricEigen axes = symmetric_eigen(known);
         Eigen::Vector2d step = Eigen::Vector2d::Zero();
@@ -168,12 +168,12 @@ std::vector<TileShift> tile_shifts(const std::vector<WarpTile>& tiles, double co
                 step += axis * (axis.dot(right) / axes.values(i));
             }
         }
-        const Eigen::Vector4d right_all = tile.products(all, kValue);
+        const Eigen::Vector4d right_all = tile.products(all, kValueColumn);
         const Eigen::Matrix4d normal_all = tile.products(all, all);
         const Eigen::Vector4d fit_all = least_norm_solution(normal_all, right_all);
-        const double squares = tile.products(kValue, kValue) - right_all.dot(fit_all);
+        const double squares = tile.products(kValueColumn, kValueColumn) - right_all.dot(fit_all);
         const double variance = std::max(squares / std::max(1.0, tile.pixels - 4.0),
-                                         kNothing * tile.products(kValue, kValue) / tile.pixels);
+                                         kNothing * tile.products(kValueColumn, kValueColumn) / tile.pixels);
         const double size = frame.half_diagonal_px;
         if (step.allFinite() && variance > 0.0) {
             result.push_back({.middle = tile.middle,

@@ -36,7 +36,7 @@ cv::Mat bits_of(std::uint64_t marker, int cells) {
     return bits;
 }
 
-std::uint64_t turned(std::uint64_t marker, int cells) {
+std::uint64_t turned_marker(std::uint64_t marker, int cells) {
     std::uint64_t result = 0;
     for (int row = 0; row < cells; ++row) {
         for (int column = 0; column < cells; ++column) {
@@ -53,11 +53,11 @@ int least_distance(const std::vector<std::uint64_t>& markers, int cells) {
     for (std::size_t i = 0; i < markers.size(); ++i) {
         std::uint64_t turn = markers[i];
         for (int quarter = 1; quarter < 4; ++quarter) {
-            turn = turned(turn, cells);
+            turn = turned_marker(turn, cells);
             least = std::min(least, std::popcount(turn ^ markers[i]));
         }
         for (int quarter = 0; quarter < 4; ++quarter) {
-            turn = turned(turn, cells);
+            turn = turned_marker(turn, cells);
             for (std::size_t j = i + 1; j < markers.size(); ++j) {
                 least = std::min(least, std::popcount(turn ^ markers[j]));
             }

@@ -35,7 +35,7 @@ std::string in_words(scene::GridSize size) {
 }
 
 /// The lattice as a chart that was turned by a quarter turn numbers it.
-std::vector<LatticeSpot> turned(std::vector<LatticeSpot> spots) {
+std::vector<LatticeSpot> turned_lattice(std::vector<LatticeSpot> spots) {
     const int columns = size_of(spots).columns;
     for (LatticeSpot& spot : spots) {
         spot = {spot.row, columns - 1 - spot.column, spot.middle};
@@ -207,7 +207,7 @@ ChartSearch numbered(std::vector<LatticeSpot> spots, scene::GridSize grid, const
         return {.reason = "no grid of " + wanted + " found"};
     }
     Placing placing = best_placing(spots, grid);
-    std::vector<LatticeSpot> other = turned(spots);
+    std::vector<LatticeSpot> other = turned_lattice(spots);
     const Placing other_placing = best_placing(other, grid);
     if (other_placing.inside > placing.inside) {
         spots = std::move(other);

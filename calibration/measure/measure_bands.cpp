@@ -120,7 +120,7 @@ Apart apart(const std::vector<std::optional<Vec2d>>& a, const std::vector<std::o
     return {std::abs(terms.values[k]), std::sqrt(terms.covariance[3 * k])};
 }
 
-std::string name_of(char colour) {
+std::string colour_name(char colour) {
     return colour == 'r' ? "red" : colour == 'g' ? "green" : "blue";
 }
 
@@ -135,7 +135,7 @@ const formats::Image& trusted(const BandPlanes& planes, const std::string& name,
             profile.warnings.push_back(fmt::format(
                 "{}: measured by the {} pixels alone, the strongest: the {} ones are {:.2f} ± {:.2f} px off "
                 "in the mean, so that they see other light",
-                name, name_of(strongest.colour), name_of(other.colour), by.mean_px, by.standard_error_px));
+                name, colour_name(strongest.colour), colour_name(other.colour), by.mean_px, by.standard_error_px));
             return strongest.plane;
         }
     }

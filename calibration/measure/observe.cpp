@@ -314,7 +314,7 @@ Look look_at(const Picture& picture, const MeasureInput& input) {
     return look;
 }
 
-void add(SharpnessObservations& all, SharpnessObservations& own) {
+void add_observed(SharpnessObservations& all, SharpnessObservations& own) {
     const auto append = [](auto& to, auto& from) {
         for (auto& [channel, list] : from) {
             auto& known = to[channel];
@@ -339,7 +339,7 @@ void take(Observations& seen, Look look, const Picture& picture, const MeasureIn
         seen.height = look.height;
         seen.channels = look.channels;
         seen.grey = seen.grey && look.grey;
-        add(seen.sharpness, look.sharpness);
+        add_observed(seen.sharpness, look.sharpness);
     }
     seen.pictures.push_back(std::move(look.own));
 }

@@ -42,7 +42,7 @@ std::vector<std::string> texts_of(const char* multi) {
     return texts;
 }
 
-std::string name_of(const lfLens& lens) {
+std::string lens_name(const lfLens& lens) {
     return lens.Model == nullptr ? std::string() : std::string(lens.Model);
 }
 
@@ -168,7 +168,7 @@ void take_vignetting(const lfLens& entry, double focal_length_mm, PhotographedLe
 }
 
 PhotographedLens lens_of(const lfLens& entry, double focal_length_mm) {
-    PhotographedLens lens{.maker = maker_of(entry), .model = name_of(entry)};
+    PhotographedLens lens{.maker = maker_of(entry), .model = lens_name(entry)};
     lens.crop_factor = entry.CropFactor;
     lens.aspect_ratio = entry.AspectRatio > 0.0F ? entry.AspectRatio : 1.5F;
     const auto projection = projection_of(entry.Type);
@@ -189,7 +189,7 @@ PhotographedLens lens_of(const lfLens& entry, double focal_length_mm) {
 /// "Canon: Canon FDn 50mm 1:1.4, crop factor 2, rectilinear".
 std::string described(const lfLens& entry) {
     const auto projection = projection_of(entry.Type);
-    return fmt::format("\"{}\" of {}, crop factor {:.4g}, {}", name_of(entry), maker_of(entry), entry.CropFactor,
+    return fmt::format("\"{}\" of {}, crop factor {:.4g}, {}", lens_name(entry), maker_of(entry), entry.CropFactor,
                        projection ? optics::projection_name(*projection) : "of another projection");
 }
 
@@ -225,7 +225,7 @@ std::vector<std::string> nearest_names(const std::vector<const lfLens*>& all, co
     const std::string wanted = lower_case(trimmed(model));
     std::set<std::tuple<bool, int, std::string>> ranked;
     for (const lfLens* entry : all) {
-        const std::string name = name_of(*entry);
+        const std::string name = lens_name(*entry);
         const std::string small = lower_case(name);
         const bool holds = !wanted.empty() && small.find(wanted) != std::string::npos;
         ranked.emplace(!holds, spelling_distance(wanted, small), name);

@@ -70,7 +70,7 @@ std::string most_common(const std::vector<Surveyed>& photos, const std::function
     return best;
 }
 
-std::string size_in_words(const Surveyed& photo) {
+std::string pixels_in_words(const Surveyed& photo) {
     return fmt::format("{} × {} pixels", photo.header.width, photo.header.height);
 }
 
@@ -104,14 +104,14 @@ void leave_out_others(std::vector<Surveyed>& photos, const std::function<std::st
 
 /// Pictures whose sides are swapped have been turned by a program; which way, nothing says.
 void leave_out_turned(std::vector<Surveyed>& photos) {
-    const std::string common = most_common(photos, size_in_words);
+    const std::string common = most_common(photos, pixels_in_words);
     for (Surveyed& photo : photos) {
-        if (in_use(photo) && photo.header.width != photo.header.height && size_in_words(photo) != common &&
+        if (in_use(photo) && photo.header.width != photo.header.height && pixels_in_words(photo) != common &&
             fmt::format("{} × {} pixels", photo.header.height, photo.header.width) == common) {
             photo.picture.left_out = fmt::format(
                 "{}, most of the others have {}: turned by a program, so that the sensor's own rows are no longer "
                 "known",
-                size_in_words(photo), common);
+                pixels_in_words(photo), common);
         }
     }
 }
@@ -183,7 +183,7 @@ PhotoSurvey survey_photos(const std::vector<fs::path>& charts, const std::vector
     leave_out_others(photos, lens_in_words);
     leave_out_others(photos, focal_length_in_words);
     leave_out_turned(photos);
-    leave_out_others(photos, size_in_words);
+    leave_out_others(photos, pixels_in_words);
     mark_other_apertures(photos);
 
     PhotoSurvey survey{.pictures = {}, .notes = common_notes(photos), .suspicions = {}};

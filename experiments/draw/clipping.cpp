@@ -102,7 +102,7 @@ std::vector<std::vector<SvgPoint>> hatching(const std::vector<std::vector<SvgPoi
 
 std::vector<SvgPoint> clipped_polygon(const std::vector<SvgPoint>& points, const PageBox& box) {
     std::vector<SvgPoint> kept;
-    std::ranges::copy_if(points, std::back_inserter(kept), is_finite);
+    std::ranges::copy_if(points, std::back_inserter(kept), [](SvgPoint point) { return is_finite(point); });
     // Against each edge: the signed distance to its inner side.
     const auto cut = [&](auto inside_by) {
         std::vector<SvgPoint> next;

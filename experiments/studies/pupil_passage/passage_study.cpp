@@ -114,7 +114,7 @@ Json passage_json(const Passage& passage) {
                        : Json(nullptr)}};
 }
 
-findings::Subject subject_of(const Passage& passage) {
+findings::Subject passage_subject(const Passage& passage) {
     const auto percent = [](double fraction) { return fmt::format("{:.1f} %", 100.0 * fraction); };
     findings::Subject subject{
         .id = id_of(passage.setting),
@@ -182,7 +182,7 @@ std::vector<findings::Check> passage_checks(const std::vector<Passage>& passages
 
 findings::Findings passage_findings(const std::vector<Passage>& passages) {
     findings::Findings found{.checks = passage_checks(passages), .subjects_title = "Lenses"};
-    std::ranges::transform(passages, std::back_inserter(found.subjects), subject_of);
+    std::ranges::transform(passages, std::back_inserter(found.subjects), passage_subject);
     Json table;
     std::ranges::transform(passages, std::back_inserter(table), passage_json);
     found.tables = {{"passages", std::move(table)}};

@@ -109,7 +109,7 @@ Json extreme_json(const StabilitySweep& sweep) {
     return json;
 }
 
-findings::Subject subject_of(const StabilitySweep& sweep) {
+findings::Subject extreme_subject(const StabilitySweep& sweep) {
     findings::Subject subject{.id = sweep.extreme.id, .kind = sweep.extreme.setting, .label = sweep.extreme.title};
     for (std::size_t type = 0; type < kNumberTypes.size(); ++type) {
         subject.facts.push_back({kNumberTypes.at(type), trouble_text(sweep, type, kTroubleMm.at(type))});
@@ -177,7 +177,7 @@ std::optional<Onset> onset_of_trouble(const StabilitySweep& sweep, std::size_t t
 
 findings::Findings stability_findings(const std::vector<StabilitySweep>& sweeps) {
     findings::Findings found{.checks = stability_checks(sweeps), .counts_checks = true, .subjects_title = "Extremes"};
-    std::ranges::transform(sweeps, std::back_inserter(found.subjects), subject_of);
+    std::ranges::transform(sweeps, std::back_inserter(found.subjects), extreme_subject);
     Json extremes;
     std::ranges::transform(sweeps, std::back_inserter(extremes), extreme_json);
     found.tables = {{"extremes", std::move(extremes)}};

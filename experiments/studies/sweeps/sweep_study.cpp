@@ -242,7 +242,7 @@ std::string range_text(const Sweep& sweep, const std::vector<SweepValue>& values
                        missing == 0 ? "" : fmt::format("; {} of {} do not exist", missing, values.size()));
 }
 
-Json sweep_json(const Sweep& sweep, const std::vector<SweepValue>& values) {
+Json swept_json(const Sweep& sweep, const std::vector<SweepValue>& values) {
     Json json{{"name", sweep.name}, {"over", sweep.over}, {"curves", sweep.curves}, {"quantities", sweep.quantities}};
     for (const findings::Axis& axis : sweep.axes) {
         Json list = Json::list();
@@ -373,7 +373,7 @@ findings::Findings sweep_findings(const Sweep& sweep, const std::vector<SweepVal
         }
     }
     subject.pictures = sweep_charts(sweep, values);
-    found.tables = {{"swept", Json::list({sweep_json(sweep, values)})}};
+    found.tables = {{"swept", Json::list({swept_json(sweep, values)})}};
     for (const std::string& lens : findings::axis_named(sweep.axes, "lens")->texts) {
         std::ranges::move(formats::files_of_lens(lens), std::back_inserter(found.inputs));
     }

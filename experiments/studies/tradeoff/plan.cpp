@@ -48,7 +48,7 @@ bool belongs_to_camera(const std::string& effect) {
                effect) > 0;
 }
 
-bool is_reference(const CandidateRender& candidate) {
+bool is_reference_render(const CandidateRender& candidate) {
     return candidate.rung.name == kReferenceRung;
 }
 
@@ -103,7 +103,7 @@ class Planner {
         }
         decide_stray_light(std::move(stray));
         const auto cheapest = std::ranges::find_if(candidates(), [&](const CandidateRender& candidate) {
-            return is_reference(candidate) || without(candidate).keeps(tolerance_);
+            return is_reference_render(candidate) || without(candidate).keeps(tolerance_);
         });
         budget_ = without(*cheapest);
         choose_wavelengths();
@@ -215,7 +215,7 @@ class Planner {
             planned.rung.name = candidate.rung.name;
             try {
                 const PlannedCheck checked = check(pilot_, planned, {}, full);
-                if (!is_reference(candidate) && !keeps(surely(checked.error), tolerance_)) {
+                if (!is_reference_render(candidate) && !keeps(surely(checked.error), tolerance_)) {
                     plan_.refused.push_back(
                         fmt::format("{}: {}", candidate.rung.name, excess(surely(checked.error), tolerance_)));
                     continue;
