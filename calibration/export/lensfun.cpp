@@ -23,7 +23,7 @@ constexpr double kLinearEnough_px = 0.01;
 constexpr double kFisheyeFrom_rad = 0.9;  // 52°: no rectilinear lens that is sold reaches much farther
 
 /// r = Σ coefficient[i] t^power[i], t = r/f of the ideal projection.
-struct PoweredPolynomial {
+struct SparsePolynomial {
     std::vector<int> powers;
     std::vector<double> coefficients;
 
@@ -46,7 +46,7 @@ struct Sample {
     double sigma = 1.0;
 };
 
-std::optional<PoweredPolynomial> fit_powers(const std::vector<Sample>& samples, std::vector<int> powers) {
+std::optional<SparsePolynomial> fit_powers(const std::vector<Sample>& samples, std::vector<int> powers) {
     const auto rows = static_cast<Eigen::Index>(samples.size());
     LinearProblem problem{.a = Eigen::MatrixXd(rows, static_cast<Eigen::Index>(powers.size())),
                           .y = Eigen::VectorXd(rows),
@@ -64,12 +64,12 @@ std::optional<PoweredPolynomial> fit_powers(const std::vector<Sample>& samples, 
     if (!fit) {
         return std::nullopt;
     }
-    return PoweredPolynomial{std::move(powers),
-                             {fit->parameters.data(), fit->parameters.data() + fit->parameters.size()}};
+    return SparsePolynomial{std::move(powers),
+                            {fit->parameters.data(), fit->parameters.data() + fit->parameters.size()}};
 }
 
 /// The smallest t with P(t) = radius; none where P turns back before.
-std::optional<double> solve(const PoweredPolynomial& polynomial, double radius, double step) {
+std::optional<double> solve(const SparsePolynomial& polynomial, double radius, double step) {
     double low = 0.0;
     double previous = 0.0;
     for (int i = 0; i < 10 * kRadii; ++i) {
@@ -93,13 +93,13 @@ struct Distortion {
     std::string model;
     double focal_px = 0.0;
     std::vector<std::pair<std::string, double>> terms;
-    PoweredPolynomial polynomial;
+    SparsePolynomial polynomial;
     double largest_difference_px = 0.0;
 };
 
 /// From r = Σ A_n t^n to lensfun's r_d/s = Σ a_n (r_u/s)^n with r_u = f t, so a_n = A_n s^(n−1) / f^n. poly5 has
 /// a_1 = 1, hence f = A_1; poly3 and ptlens keep the radius s where it is (Σ a_n = 1), hence f = s / t_s, P(t_s) = s.
-std::optional<Distortion> lensfun_terms(const std::string& model, PoweredPolynomial polynomial, double unit_px,
+std::optional<Distortion> lensfun_terms(const std::string& model, SparsePolynomial polynomial, double unit_px,
                                         double step) {
     Distortion result{.model = model, .focal_px = polynomial.coefficient(1), .terms = {}, .polynomial = {}};
     if (model != "poly5") {

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kEquivalentDiagonal_mm = 43.266615305567875;
+constexpr double kEquivalentDiagonal_mm = 43.266615305567875;  // of 36 × 24 mm
 constexpr double kWide_deg = 25.0;             // half the field from which on lenses without distortion are rare
 constexpr double kNoDistortion_percent = 0.1;  // what a corrected picture may have left
 constexpr double kFocalLengthMargin = 0.06;    // of cameras' own figures: rounding, and breathing at close focus

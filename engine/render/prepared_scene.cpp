@@ -57,11 +57,20 @@ std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes
     straight.guides_ghosts = guides_ghosts;
     if (std::ranges::any_of(passes, [](const std::string& name) { return !pass_named(name).goes_straight; })) {
         straight.stray_camera = &stray_camera();
-        if (const auto* scene = std::get_if<scene::Scene>(&world_)) {
-            refuse_lights_in_lens(*straight.stray_camera, scene->lights, light_places_, true);
-        }
+        refuse_near_lights(*straight.stray_camera);
     }
     return renders_of(passes, straight, integrators_);
+}
+
+EnergyAudit PreparedScene::audit(std::uint64_t seed, std::uint32_t paths) const {
+    refuse_near_lights(camera_);
+    return energy_audit(view(seed, false), paths);
+}
+
+void PreparedScene::refuse_near_lights(const Camera& camera) const {
+    if (const auto* scene = std::get_if<scene::Scene>(&world_)) {
+        refuse_lights_in_lens(camera, scene->lights, light_places_, true);
+    }
 }
 
 const Camera& PreparedScene::stray_camera() {

@@ -35,10 +35,9 @@ class PreparedScene {
     [[nodiscard]] std::vector<Render> render(const std::vector<std::string>& passes, std::uint64_t seed,
                                              bool has_features, bool guides_ghosts = true);
 
-    /// Where the light goes that comes into the camera. Throws InputError where that is not known (FateEntrance).
-    [[nodiscard]] EnergyAudit audit(std::uint64_t seed, std::uint32_t paths) const {
-        return energy_audit(view(seed, false), paths);
-    }
+    /// Where the light goes that comes into the camera. Throws InputError where that is not known (FateEntrance), and
+    /// for a light that is too near.
+    [[nodiscard]] EnergyAudit audit(std::uint64_t seed, std::uint32_t paths) const;
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     /// Of all that rays have met in cameras, in any render so far.
@@ -54,6 +53,7 @@ class PreparedScene {
   private:
     [[nodiscard]] View view(std::uint64_t seed, bool has_features) const;
     [[nodiscard]] World make_world();
+    void refuse_near_lights(const Camera& camera) const;
     [[nodiscard]] const Camera& stray_camera();
 
     SceneSetup setup_;

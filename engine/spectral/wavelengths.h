@@ -6,11 +6,11 @@
 
 namespace lensproof::spectral {
 
+inline constexpr double kMmPerNm = 1e-6;
+
 // Wavelengths in nm, in standard air: catalogue indices, colour-matching functions and illuminants are tabulated so.
 // The lines are ISO 7944:1998 (Optics and optical instruments — Reference wavelengths) and the further ones that glass
 // catalogues use, as in Schott TIE-29. Line letters are cased: d is helium, D is sodium.
-inline constexpr double kMmPerNm = 1e-6;
-
 inline constexpr double kLineI = 365.0146;       // i, Hg
 inline constexpr double kLineH = 404.6561;       // h, Hg
 inline constexpr double kLineG = 435.8343;       // g, Hg

@@ -16,7 +16,7 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr double kMicrometresPerMm = 1000.0;  // of a mm
+constexpr double kMicrometresPerMm = 1000.0;
 
 std::optional<double> scaled(const std::optional<double>& value, double scale) {
     return value ? std::optional(scale * *value) : std::nullopt;

@@ -131,8 +131,8 @@ TEST(PreparedScene, WhatIsDiffractedIsMissingInAnyModelsImage) {
 // A light where the lens is would shine through glass and blades as if they were not there. One just in front of the
 // first surface is seen, but no light path begins there.
 TEST(PreparedScene, RefusesLightsInTheLens) {
-    const auto complaint = [](const std::string& light, const std::vector<std::string>& passes = {"imaged"}) {
-        const SceneSetup setup = under_a_sun("[camera]\nlens = \"tessar\"\n", {}, light + R"(
+    const auto setup_with = [](const std::string& light) {
+        return under_a_sun("[camera]\nlens = \"tessar\"\n", {}, light + R"(
 [[objects]]
 name = "panel"
 shape = "quad"
@@ -144,8 +144,11 @@ name = "black"
 kind = "diffuse"
 reflectance = 0
 )");
-        return complaint_about(
-            [&] { static_cast<void>(PreparedScene(setup, PixelFilter{}, Cache()).render(passes, 1, false, false)); });
+    };
+    const auto complaint = [&](const std::string& light, const std::vector<std::string>& passes = {"imaged"}) {
+        return complaint_about([&] {
+            static_cast<void>(PreparedScene(setup_with(light), PixelFilter{}, Cache()).render(passes, 1, false, false));
+        });
     };
     const std::string lamp = "[[lights]]\nkind = \"point\"\nintensity_cd = 1\nposition_mm = ";
     EXPECT_TRUE(says(complaint(lamp + "[1, 2, -20]\n"), "lights[2]: shines from inside the lens, from 20 mm"));
@@ -162,6 +165,8 @@ reflectance = 0
         "");
     EXPECT_EQ(complaint(lamp + "[0, 0, 5]\n"), "");
     EXPECT_TRUE(says(complaint(lamp + "[0, 0, 5]\n", {"imaged", "ghosts"}), "5 mm in front of the lens"));
+    const PreparedScene near(setup_with(lamp + "[0, 0, 5]\n"), PixelFilter{}, Cache());
+    EXPECT_TRUE(says(complaint_about([&] { static_cast<void>(near.audit(1, 16)); }), "5 mm in front of the lens"));
 }
 
 /// A wall before the Tessar.
