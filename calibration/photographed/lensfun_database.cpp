@@ -261,7 +261,7 @@ bool is_same_calibration(const PhotographedLens& a, const PhotographedLens& b) {
 
 /// Files of a folder that can hold entries, sorted.
 std::vector<std::filesystem::path> database_files(const std::filesystem::path& data) {
-    if (!std::filesystem::is_directory(data)) {
+    if (!is_folder(data)) {
         return {data};
     }
     std::vector<std::filesystem::path> files;

@@ -152,7 +152,7 @@ formats::CameraNotes common_notes(const std::vector<Surveyed>& photos) {
 }  // namespace
 
 std::vector<fs::path> picture_files(const fs::path& file_or_folder) {
-    if (!fs::is_directory(file_or_folder)) {
+    if (!is_folder(file_or_folder)) {
         return {file_or_folder};
     }
     std::vector<fs::path> files;

@@ -40,6 +40,16 @@ bool lies_in(const fs::path& folder, const fs::path& file) {
 
 }  // namespace
 
+bool is_there(const fs::path& file) {
+    std::error_code error;
+    return fs::exists(file, error);
+}
+
+bool is_folder(const fs::path& file) {
+    std::error_code error;
+    return fs::is_directory(file, error);
+}
+
 void check_readable(const fs::path& file) {
     std::error_code error;
     const fs::file_status status = fs::status(file, error);

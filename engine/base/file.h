@@ -6,6 +6,11 @@
 
 namespace lensproof {
 
+/// Whether there is anything of that name, and whether that is a folder. What cannot be looked at, as a name longer
+/// than names may be, is not there.
+bool is_there(const std::filesystem::path& file);
+bool is_folder(const std::filesystem::path& file);
+
 /// Throws InputError naming the file when it is missing or a folder.
 void check_readable(const std::filesystem::path& file);
 

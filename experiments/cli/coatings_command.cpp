@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "engine/analysis/coating_curves.h"
+#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/formats/prescription/shipped_coatings.h"
@@ -38,7 +39,7 @@ formats::NamedCoating find_coating(const std::string& name) {
     if (formats::is_shipped_coating(name)) {
         return formats::shipped_coating(name);
     }
-    if (!std::filesystem::exists(name)) {
+    if (!is_there(name)) {
         throw InputError(fmt::format("{}: neither a file nor a coating that ships{}", printable(name),
                                      formats::coating_hint(name, {})));
     }

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "calibration/explain/lens_change.h"
+#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/toml_text.h"
 #include "engine/base/write_file.h"
@@ -59,7 +60,7 @@ std::string manifest_text(const TwinsOptions& options, const fs::path& folder, c
 
 std::string experiment_text(const TwinsOptions& options, const fs::path& folder) {
     // A name of one that ships, or a file.
-    const std::string lens = fs::exists(options.lens) ? seen_from(folder, options.lens) : options.lens;
+    const std::string lens = is_there(options.lens) ? seen_from(folder, options.lens) : options.lens;
     std::string text = fmt::format(
         "title = \"Photos and their twins\"\n"
         "summary = \"Each photo of a chart is rendered again through a prescription, from the place where the camera "

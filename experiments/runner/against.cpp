@@ -157,7 +157,7 @@ std::string number_text(const Json& number) {
 }  // namespace
 
 EarlierReport read_earlier_report(const fs::path& place) {
-    EarlierReport earlier{.file = fs::is_directory(place) ? place / "report.json" : place, .json = {}};
+    EarlierReport earlier{.file = is_folder(place) ? place / "report.json" : place, .json = {}};
     earlier.json = Json::parse(read_file(earlier.file), earlier.file.string());
     if (earlier.json["schema"] != Json("lensproof-report/1")) {
         throw InputError(

@@ -104,10 +104,10 @@ std::vector<std::string> shipped_lens_names() {
 std::filesystem::path find_lens_file(const std::string& lens) {
     std::filesystem::path shipped = data_root() / "lenses" / (lens + ".toml");
     const bool is_name = lens.find('/') == std::string::npos && lens.find('.') == std::string::npos;
-    if (is_name && !lens.empty() && std::filesystem::exists(shipped)) {
+    if (is_name && !lens.empty() && is_there(shipped)) {
         return shipped;
     }
-    if (!std::filesystem::exists(lens)) {
+    if (!is_there(lens)) {
         throw InputError(fmt::format("{}: neither a file nor a lens that ships{}", lens,
                                      complete_name_hint(lens, shipped_lens_names())));
     }

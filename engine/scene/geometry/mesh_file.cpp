@@ -236,9 +236,7 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
     importer.SetIOHandler(files);  // which it then owns
     const aiScene* scene = nullptr;
     try {
-        if (lower_extension(file) == ".ply") {
-            check_ply(read_file(file), file);
-        } else if (is_gltf(file)) {
+        if (is_gltf(file)) {
             check_gltf(file);
         }
         scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
@@ -311,9 +309,11 @@ MeshFile read_mesh_here(const std::filesystem::path& file, const MeshOptions& op
     const bool by_material = options.by_material && is_gltf(file);
     const std::vector<MeshMaterial> materials =
         by_material ? read_gltf_materials(file).materials : std::vector<MeshMaterial>();
-    const std::string numbered = by_material ? gltf_with_numbered_materials(file) : std::string();
+    const std::string instead = by_material           ? gltf_with_numbered_materials(file)
+                                : extension == ".ply" ? checked_ply(read_file(file), file)
+                                                      : std::string();
     Assimp::Importer importer;
-    const aiScene& scene = read_scene(importer, file, numbered);
+    const aiScene& scene = read_scene(importer, file, instead);
     Collector collector(scene, options, materials, file.string());
     const double scale = options.mm_per_unit.value_or(is_gltf(file) ? kGltfUnitMm : 1.0);
     const AffineMap to_mm{.linear = {Vec3d{scale, 0, 0}, Vec3d{0, scale, 0}, Vec3d{0, 0, scale}}};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -27,28 +28,45 @@ struct PlyElement {
     std::string name;
     double count = 0.0;
     std::vector<PlyProperty> properties;
+    std::string_view header;  // its lines there
 };
+
+/// That Assimp knows.
+bool is_of_meshes(const PlyElement& element) {
+    constexpr std::array kNames = {"vertex", "face", "tristrips", "edge", "material"};
+    return std::ranges::find(kNames, element.name) != kNames.end();
+}
 
 struct PlyHeader {
     PlyForm form = PlyForm::ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0;  // of the header, up to the first byte of the first element
+    std::string_view before;  // the first element's lines
+    std::string_view end;     // its last line
+    std::size_t size = 0;     // of the header, up to the first byte of the first element
 };
 
 class PlyCheck {
   public:
     PlyCheck(std::string_view content, const std::filesystem::path& file) : content_(content), file_(file.string()) {}
 
-    void run() {
+    std::string run() {
         const PlyHeader header = read_header();
         rest_ = content_.substr(header.size);
+        std::string head(header.before);
+        std::string body;
         for (const PlyElement& element : header.elements) {
+            const std::string_view before = rest_;
             if (header.form == PlyForm::ascii) {
                 check_lines(element);
             } else {
                 check_bytes(element, header.form);
             }
+            if (is_of_meshes(element)) {
+                head += element.header;
+                body += before.substr(0, before.size() - rest_.size());
+            }
         }
+        return head.append(header.end) + body;
     }
 
   private:
@@ -104,18 +122,28 @@ class PlyCheck {
         if (take_line(rest) != "ply") {
             refuse("it does not begin with 'ply'");
         }
+        std::size_t begin = 0;  // of the lines that are no element's yet
+        const auto lines_before = [&](std::string_view line) {
+            const auto end = static_cast<std::size_t>(line.data() - content_.data());
+            const std::string_view lines = content_.substr(begin, end - begin);
+            begin = end;
+            (header.elements.empty() ? header.before : header.elements.back().header) = lines;
+        };
         while (const auto line = take_line(rest)) {
             const std::vector<std::string_view> words = words_of(*line);
             if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
                 continue;
             }
             if (words[0] == "end_header") {
+                lines_before(*line);
                 header.size = content_.size() - rest.size();
+                header.end = content_.substr(begin, header.size - begin);
                 return header;
             }
             if (words[0] == "format" && words.size() == 3) {
                 header.form = form_of(words[1]);
             } else if (words[0] == "element" && words.size() == 3) {
+                lines_before(*line);
                 header.elements.push_back(element_of(words));
             } else if (words[0] == "property" && words.size() == 3 && !header.elements.empty()) {
                 header.elements.back().properties.push_back({.bytes = size_of(words[1])});
@@ -196,8 +224,8 @@ class PlyCheck {
 
 }  // namespace
 
-void check_ply(std::string_view content, const std::filesystem::path& file) {
-    PlyCheck(content, file).run();
+std::string checked_ply(std::string_view content, const std::filesystem::path& file) {
+    return PlyCheck(content, file).run();
 }
 
 }  // namespace lensproof::scene

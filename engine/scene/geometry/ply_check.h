@@ -1,12 +1,14 @@
 // engine/scene/geometry/ply_check.h — whether a PLY file holds all that its header promises.
 #pragma once
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace lensproof::scene {
 
 /// Throws InputError naming `file` unless the header is sound and every element that it promises is there, with all its
-/// properties: Assimp's own reader goes round for ever where a file ends early, and takes any count for true.
-void check_ply(std::string_view content, const std::filesystem::path& file);
+/// properties: Assimp's own reader goes round for ever where a file ends early, and takes any count for true. Returns
+/// the content without elements that no mesh has, which PLY allows and Assimp takes for the next one's.
+std::string checked_ply(std::string_view content, const std::filesystem::path& file);
 
 }  // namespace lensproof::scene

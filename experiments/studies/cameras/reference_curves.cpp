@@ -125,12 +125,12 @@ ReferenceSource read_reference(const TomlTable& table, const std::string& key, c
     } else if (kind == "lens:") {
         const std::filesystem::path beside = referred_file(table.file(), name);
         try {
-            source.file = std::filesystem::exists(beside) ? beside : formats::find_lens_file(name);
+            source.file = is_there(beside) ? beside : formats::find_lens_file(name);
         } catch (const InputError& error) {
             table.fail(key, error.what());
         }
     }
-    if (!source.file.empty() && !std::filesystem::exists(source.file)) {
+    if (!source.file.empty() && !is_there(source.file)) {
         table.fail(key, fmt::format("names \"{}\": {} is not there", text, source.file.string()));
     }
     return source;

@@ -227,7 +227,7 @@ PhotographedSettings read_photographed_table(TomlTable& table) {
     const std::filesystem::path manifest = referred_file(table.file(), table.text("pairs")).lexically_normal();
     const bool is_optional = table.boolean_or("optional", false);
     table.finish();
-    if (!is_optional || std::filesystem::exists(manifest)) {
+    if (!is_optional || is_there(manifest)) {
         settings.pairs = pairs_of_manifest(manifest, database);
     }
     return settings;

@@ -69,4 +69,17 @@ TEST(ReadFile, TakesAnEmptyFileAndADevice) {
     EXPECT_TRUE(says(complaint(folder.path()), "is a folder"));
 }
 
+// Names of more than 255 bytes are no file's, and to ask for them is no error.
+TEST(IsThere, WhatNoFileCanBeCalledIsNot) {
+    const TestFolder folder;
+    write_file(folder.path() / "file", "");
+    EXPECT_TRUE(is_there(folder.path() / "file"));
+    EXPECT_TRUE(is_there(folder.path()));
+    EXPECT_FALSE(is_folder(folder.path() / "file"));
+    EXPECT_TRUE(is_folder(folder.path()));
+    const std::filesystem::path long_name = folder.path() / std::string(300, 'x');
+    EXPECT_FALSE(is_there(long_name));
+    EXPECT_FALSE(is_folder(long_name));
+}
+
 }  // namespace lensproof::file_test

@@ -173,6 +173,16 @@ TEST_F(MeshFileTest, EveryFormHoldsTheSameBox) {
     expect_box(read_mesh(write("box.obj", kBoxObj), {.mm_per_unit = 25.0}), 25.0, {0, 0, 0});
     expect_box(read_mesh(write("box.ply", box_ply())), 1.0, {0, 0, 0});
     expect_box(read_mesh(write("binary.PLY", box_binary_ply())), 1.0, {0, 0, 0});
+    // Elements that meshes do not have may stand before theirs, and between them.
+    const auto with = [](std::string ply, const std::string& values) {
+        const std::string others = "element camera 2\nproperty float view_px\nproperty list uchar uchar flags\n";
+        ply.insert(ply.find("element vertex"), others);
+        return ply.insert(ply.find("end_header\n") + 11, values);
+    };
+    expect_box(read_mesh(write("camera.ply", with(box_ply(), "7 2 1 1\n8 0\n"))), 1.0, {0, 0, 0});
+    expect_box(
+        read_mesh(write("binary_camera.ply", with(box_binary_ply(), std::string("\0\0\0\0\2\1\1\0\0\0\0\0", 12)))), 1.0,
+        {0, 0, 0});
     write("box.bin", box_buffer());
     // The outer node doubles what the inner has moved by 1: the box of 4 × 6 × 8 from x = 2, in metres.
     expect_box(read_mesh(write("box.gltf", box_gltf(R"("uri": "box.bin", )"))), 2000.0, {1, 0, 0});
