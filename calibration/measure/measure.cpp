@@ -256,9 +256,21 @@ void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2
 
 }  // namespace
 
+std::vector<std::string> known_parts() {
+    return {"distortion", "vignetting", "chromatic-shift", "sharpness"};
+}
+
+WantedParts parts_named(const std::vector<std::string>& names) {
+    const auto has = [&](const char* name) { return std::ranges::count(names, name) > 0; };
+    return {.vignetting = has("vignetting"), .chromatic_shift = has("chromatic-shift"), .sharpness = has("sharpness")};
+}
+
 Profile measure(const MeasureInput& input) {
     if (input.pictures.empty()) {
         throw InputError("measuring " + input.name + ": no pictures given: expected at least one");
+    }
+    if (shows_star(input) && !input.parts.sharpness) {
+        throw InputError("a Siemens star tells sharpness, which was not asked for, and nothing else");
     }
     Observations seen = observe(input);
     const std::vector<ChartView> charts = charts_in(seen);
@@ -292,13 +304,22 @@ Profile measure(const MeasureInput& input) {
     } else {
         centre = measure_geometry(profile, seen, input, charts);
     }
+    const WantedParts& parts = input.parts;
+    const auto measure_part = [&](const char* name, bool is_wanted, const auto& add) {
+        if (is_wanted) {
+            add();
+        } else {
+            profile.not_measured[name] = "was not asked for";
+        }
+    };
     if (!has_lines || is_lit) {
-        add_vignetting(profile, seen, centre);
+        measure_part(part::kVignetting, parts.vignetting, [&] { add_vignetting(profile, seen, centre); });
     }
     if (!has_lines) {
-        add_sharpness(profile, seen.sharpness, centre);
+        measure_part(part::kSharpness, parts.sharpness, [&] { add_sharpness(profile, seen.sharpness, centre); });
         add_light_gradients(profile, seen, centre);
-        add_chromatic_shifts(profile, seen, centre);
+        measure_part(part::kChromaticShift, parts.chromatic_shift,
+                     [&] { add_chromatic_shifts(profile, seen, centre); });
     }
     if (!charts.empty() && !profile.geometry && profile.curves.empty()) {
         throw InputError(profile.not_measured[part::kGeometry]);

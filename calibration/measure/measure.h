@@ -31,6 +31,19 @@ struct Picture {
     std::optional<int> jpeg_quality = std::nullopt;  // that it was compressed with, for the self-test
 };
 
+/// What charts are asked beside the camera and its distortion. What they are not asked is not looked at.
+struct WantedParts {
+    bool vignetting = true;
+    bool chromatic_shift = true;
+    bool sharpness = true;
+
+    friend bool operator==(const WantedParts&, const WantedParts&) = default;
+};
+
+/// By "distortion", which is always one of them, "vignetting", "chromatic-shift" and "sharpness".
+WantedParts parts_named(const std::vector<std::string>& names);
+std::vector<std::string> known_parts();
+
 struct MeasureInput {
     std::string name;  // of the profile
     std::vector<Picture> pictures;
@@ -43,8 +56,8 @@ struct MeasureInput {
     /// In pictures of the role `edges`: rectangles with one edge each; one without a size is the whole picture. None:
     /// edges are looked for (calibration/sharpness/find_edges.h).
     std::vector<PixelRectangle> edges;
-    bool with_sharpness = true;  // whether the edges of charts are looked at
-    int threads = 0;             // 0: one a core; they change nothing but the time
+    WantedParts parts;
+    int threads = 0;  // 0: one a core; they change nothing but the time
     /// Told, before each picture or behind it, which part of them has been looked at, 0 to 1.
     std::function<void(double)> progress = nullptr;
     /// Where the focus stood in which picture (by name), mm, for field curvature; empty: not known.

@@ -103,13 +103,13 @@ void observe_channels(Look& look, const formats::Image& image, const Picture& pi
     const bool grey = all_channels_alike(image);
     for (int channel = 0; channel < image.channel_count(); ++channel) {
         const std::string& channel_name = image.channels[channel];
-        if (picture.use_light) {
+        if (picture.use_light && input.parts.vignetting) {
             own.light[channel_name] = chart_white_samples(image, channel, points, chart);
         }
-        if (input.with_sharpness && (channel == reference || !grey)) {
+        if (input.parts.sharpness && (channel == reference || !grey)) {
             observe_chart_edges(look.sharpness, image, channel, picture.name, points, chart);
         }
-        if (channel == reference || grey) {
+        if (channel == reference || grey || !input.parts.chromatic_shift) {
             continue;
         }
         const ChartPoints other = refine(image, channel, points, chart);
@@ -180,7 +180,7 @@ void observe_directions(Look& look, const formats::Image& image, const Picture& 
         own.points.image_px.push_back(place.centre_px);
         own.point_errors_px.push_back(place.standard_error_px);
     }
-    for (const int channel : channels_that_differ(image)) {
+    for (const int channel : input.parts.chromatic_shift ? channels_that_differ(image) : std::vector{reference}) {
         for (const Vec2d& place : own.points.image_px) {
             const auto other =
                 channel != reference ? locate_star(image, channel, place, kDirectionReach_px) : std::nullopt;

@@ -188,7 +188,7 @@ SelfTest self_test(const MeasureInput& input, const Profile& profile) {
         simulated.geometry.radial_terms = choice->candidates[static_cast<std::size_t>(choice->chosen)].radial_terms;
     }
     simulated.pictures = simulated_pictures(input, profile);
-    simulated.with_sharpness = false;
+    simulated.parts.sharpness = false;
     const Profile again = measure(simulated);
     SelfTest result;
     result.pictures = static_cast<int>(simulated.pictures.size());

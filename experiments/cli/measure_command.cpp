@@ -109,6 +109,19 @@ calibration::KnownDirections directions_of(const std::string& file, const std::v
     return directions;
 }
 
+/// Edges tell what edges tell, lines what lines do, and who brings an even surface asks for vignetting.
+void check_only(const MeasureOptions& options) {
+    if (options.only.empty()) {
+        return;
+    }
+    if (options.lines || !options.edges.empty()) {
+        throw InputError("--only: says what a chart or directions are asked, expected neither --edge nor --lines");
+    }
+    if (!options.flat_fields.empty() && !calibration::parts_named(options.only).vignetting) {
+        throw InputError("--only: has no vignetting, which the pictures of --flat-field are for, expected both");
+    }
+}
+
 int run_measure(const MeasureOptions& options) {
     if (!options.output.empty() && !options.each) {
         check_output_name(options.output);
@@ -134,6 +147,7 @@ int run_measure(const MeasureOptions& options) {
             "distortion or --directions FILE for a camera");
     }
     const scene::Chart chart = options.chart.empty() ? scene::Chart{} : chart_to_find(options.chart);
+    check_only(options);
     const std::vector<std::filesystem::path> pictures = pictures_named(options.images);
     if (options.each) {
         return measure_each(options, source, chart, pictures);
@@ -152,7 +166,7 @@ int run_measure(const MeasureOptions& options) {
 std::vector<std::filesystem::path> pictures_named(const std::vector<std::string>& names) {
     std::vector<std::filesystem::path> files;
     for (const std::string& name : names) {
-        if (!std::filesystem::is_directory(name)) {
+        if (!is_folder(name)) {
             check_readable(name);
         }
         const std::vector<std::filesystem::path> found = calibration::picture_files(name);
@@ -170,6 +184,9 @@ calibration::MeasureInput measure_input(const MeasureOptions& options, const cal
     input.model = calibration::model_kind(options.model);  // none for "auto"
     input.source = source;
     input.threads = options.common.threads;
+    if (!options.only.empty()) {
+        input.parts = calibration::parts_named(options.only);
+    }
     input.geometry.fit_board_shape = options.fit_board_shape;
     input.geometry.fit_stretch = options.aspect == "free";
     input.geometry.fix_centre = options.fix_centre;
@@ -259,6 +276,13 @@ void add_measure_command(Program& program) {
         .type_name("DIR");
     command.add_flag("--each", options->each,
                      "Measure each picture by itself; -o and --plots are then folders, with a summary.csv in -o");
+    command
+        .add_option("--only", options->only,
+                    fmt::format("What a chart or directions are asked: {}. The rest is not looked at (default: all)",
+                                fmt::join(calibration::known_parts(), ", ")))
+        .check(one_of(calibration::known_parts()))
+        .separated_by(',')
+        .takes_one_argument();
     command.add_option("--flat-field", options->flat_fields, "Pictures of an even surface, for vignetting")
         .type_name("FILE");
     std::vector<std::string> models = calibration::model_kind_names();

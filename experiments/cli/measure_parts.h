@@ -27,6 +27,7 @@ struct MeasureOptions {
     double focal_length_mm = 0.0;
     bool fix_centre = false;
     bool no_self_test = false;
+    std::vector<std::string> only;   // none: all parts
     std::vector<std::string> edges;  // rectangles, or one "auto"
     bool lines = false;
     std::string directions;  // a CSV table

@@ -137,7 +137,7 @@ calibration::MeasureInput photos(bool with_sharpness) {
     calibration::MeasureInput input;
     input.name = "photos";
     input.chart = kPhotographed;
-    input.with_sharpness = with_sharpness;
+    input.parts.sharpness = with_sharpness;
     input.threads = 1;
     for (int i = 0; i < 8; ++i) {
         input.pictures.push_back(

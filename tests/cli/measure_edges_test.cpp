@@ -100,6 +100,12 @@ TEST(MeasureEdges, ABoardThatFacesTheCamera) {
         more.insert(more.begin(), command.begin(), command.end());
         return more;
     };
+    const Json geometry = place.json(with({"--only", "distortion"}));
+    EXPECT_EQ(geometry["not_measured"]["sharpness_over_the_field"], "was not asked for");
+    EXPECT_TRUE(geometry["curves"].contains("distortion_percent"));
+    expect_refused(place, with({"--only", "blur"}), {"--only", "blur", "sharpness"});
+    expect_refused(place, with({"--only", "sharpness", "--flat-field", "board.png"}), {"--only", "--flat-field"});
+    expect_refused(place, {"measure", "board.png", "--edge", "auto", "--only", "sharpness"}, {"--only", "--edge"});
     expect_refused(place, with({"--focal-length", "2"}), {"--focal-length", "--pixel-pitch"});
     expect_refused(place, with({"--model", "brown-conrady"}), {"1 view does not determine the focal length"});
     const Json held = place.json(with({"--focal-length", "2.05", "--pixel-pitch", "5", "--fix-centre"}));

@@ -72,6 +72,16 @@ std::optional<calibration::ModelKind> read_model(TomlTable& table) {
     return calibration::model_kind(table.choice("model", names));
 }
 
+calibration::WantedParts read_parts(TomlTable& table) {
+    return table.has("only") ? calibration::parts_named(findings::names_of(table, "only", calibration::known_parts()))
+                             : calibration::WantedParts();
+}
+
+Json stated_parts(const calibration::WantedParts& parts) {
+    return {
+        {"vignetting", parts.vignetting}, {"chromatic_shift", parts.chromatic_shift}, {"sharpness", parts.sharpness}};
+}
+
 Json stated_model(const std::optional<calibration::ModelKind>& model) {
     return model ? Json(calibration::kind_name(calibration::empty_model(*model))) : Json();
 }

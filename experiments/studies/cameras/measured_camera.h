@@ -21,7 +21,11 @@ std::string read_camera_name(TomlTable& table, findings::ExperimentFile& file);
 /// Takes the key `model`; nothing where the key is missing or "auto": what fits best.
 std::optional<calibration::ModelKind> read_model(TomlTable& table);
 
-/// The model as part of what a step follows from.
+/// Takes the key `only`, a list of parts; where it is missing all.
+calibration::WantedParts read_parts(TomlTable& table);
+
+/// The parts and the model as part of what a step follows from.
+Json stated_parts(const calibration::WantedParts& parts);
 Json stated_model(const std::optional<calibration::ModelKind>& model);
 
 struct MeasuredCamera {

@@ -32,6 +32,7 @@ struct Photos {
     std::filesystem::path manifest;
     PhotoSet set;
     std::optional<calibration::ModelKind> model;
+    calibration::WantedParts parts;
     PhotoExpectations expected;
     std::vector<ReferenceSource> references;
 };
@@ -41,6 +42,7 @@ Photos read_photos_table(TomlTable& table, findings::ExperimentFile& file) {
     photos.name = read_camera_name(table, file);
     photos.manifest = referred_file(table.file(), table.text("manifest"));
     photos.model = read_model(table);
+    photos.parts = read_parts(table);
     photos.references = read_references(table);
     if (auto expected = table.optional_table("expected")) {
         if (expected->has("focal_length_px")) {
@@ -130,8 +132,11 @@ calibration::MeasureInput surveyed(const Photos& photos, const findings::RunSett
                                     .geometry = {},
                                     .source = {.kind = "photo", .images = {}, .camera = set.camera, .lens = set.lens},
                                     .pixel_pitch_um = set.pixel_pitch_um,
+                                    .parts = photos.parts,
                                     .threads = settings.threads};
-    calibration::take_survey(input, calibration::survey_photos(set.photos, set.flat_fields, std::nullopt));
+    const std::vector<std::filesystem::path> none;
+    calibration::take_survey(
+        input, calibration::survey_photos(set.photos, photos.parts.vignetting ? set.flat_fields : none, std::nullopt));
     for (std::size_t i = 0; i < set.focus_positions_mm.size(); ++i) {
         input.focus_position_mm[set.photos[i].string()] = set.focus_positions_mm[i];
     }
@@ -146,9 +151,11 @@ findings::StepInput photo_input(const calibration::Picture& picture, int widest)
 
 /// Of all that is measured in the pictures.
 findings::StepInput measured_input(const Photos& photos, const calibration::MeasureInput& input) {
-    findings::StepInput all{
-        .settings = {{"name", photos.name}, {"model", stated_model(photos.model)}, {"reading", reading()}},
-        .files = {photos.manifest}};
+    findings::StepInput all{.settings = {{"name", photos.name},
+                                         {"model", stated_model(photos.model)},
+                                         {"only", stated_parts(photos.parts)},
+                                         {"reading", reading()}},
+                            .files = {photos.manifest}};
     for (const calibration::Picture& picture : input.pictures) {
         all.settings["pictures"].push_back(picture.name);
         all.files.emplace_back(picture.name);

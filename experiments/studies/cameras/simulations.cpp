@@ -39,8 +39,9 @@ Simulation read_simulation(TomlTable& table, findings::ExperimentFile& file) {
     Simulation simulation;
     simulation.name = read_camera_name(table, file);
     simulation.model = read_model(table);
+    simulation.parts = read_parts(table);
     simulation.references = read_references(table);
-    simulation.flat_field = table.boolean_or("flat_field", true);
+    simulation.flat_field = table.boolean_or("flat_field", simulation.parts.vignetting);
     simulation.flat_field_samples_per_pixel =
         table.integer_or("flat_field_samples_per_pixel", simulation.flat_field_samples_per_pixel, 1, 1 << 20);
     TomlTable camera = table.table("camera");
@@ -215,6 +216,7 @@ findings::StepInput measured_input(const Simulation& simulation, const findings:
     return input_of(simulation, settings,
                     {{"name", simulation.name},
                      {"model", stated_model(simulation.model)},
+                     {"only", stated_parts(simulation.parts)},
                      {"views", simulation.stated_views},
                      {"flat_field", simulation.flat_field ? simulation.flat_field_samples_per_pixel : 0},
                      {"samples_per_pixel", simulation.scene.samples_per_pixel}});
@@ -285,6 +287,7 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
         .geometry = {.fit_tangential = false},  // a centred lens
         .source = {.kind = "render", .images = {}, .camera = "simulated", .lens = measured.subject.label},
         .pixel_pitch_um = 1e3 * camera.sensor().pixel_pitch_mm,
+        .parts = simulation.parts,
         .threads = settings.threads};
     measured.profile = measured_in_steps(settings, measured_input(simulation, settings), input, calibration::measure);
     measured.far_points = far_points(measured.profile, input.pictures);

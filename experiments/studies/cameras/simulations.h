@@ -22,6 +22,7 @@ struct Simulation {
     bool flat_field = true;
     int flat_field_samples_per_pixel = 128;  // an even field shows the noise that edges hide
     std::optional<calibration::ModelKind> model;
+    calibration::WantedParts parts;
     ClosedLoopLimits limits;
     std::vector<ReferenceSource> references;
     // What the file states of it, for steps to be known by.

@@ -177,6 +177,32 @@ TEST(CalibrationMeasure, UnusableSetsAreRefused) {
     }
 }
 
+// What is asked for comes out to the bit as among all the rest; what is not is not there, and the profile says why.
+TEST(CalibrationMeasure, WhatIsNotAskedForIsNotMeasured) {
+    std::vector<Picture> pictures;
+    for (const Pose& pose : tilted_poses(520.0, 0.35, 60.0)) {
+        const auto seed = static_cast<unsigned>(pictures.size());
+        pictures.push_back(
+            {"view" + std::to_string(seed), PictureRole::chart, [pose, seed] { return colour_picture(pose, seed); }});
+    }
+    MeasureInput input = input_with(std::move(pictures));
+    const Profile all = measure(input);
+    input.parts = parts_named({"distortion", "chromatic-shift"});
+    const Profile some = measure(input);
+    EXPECT_EQ(some.not_measured,
+              (std::map<std::string, std::string>{{"vignetting", "was not asked for"},
+                                                  {"sharpness_over_the_field", "was not asked for"}}));
+    ASSERT_TRUE(some.curves.contains("chromatic_shift_R_px"));
+    for (const auto& [name, curve] : some.curves) {
+        EXPECT_EQ(curve.value, all.curves.at(name).value) << name;
+    }
+    for (const char* left_out : {"vignetting_R", "vignetting_G"}) {
+        EXPECT_TRUE(all.curves.contains(left_out) && !some.curves.contains(left_out)) << left_out;
+    }
+    EXPECT_EQ(parts_named({"distortion"}), (WantedParts{false, false, false}));
+    EXPECT_EQ(parts_named(known_parts()), WantedParts());
+}
+
 // However many pictures are looked at at once, each is held against those before it.
 TEST(CalibrationMeasure, IsTheSameForAnyNumberOfThreads) {
     std::vector<Picture> pictures{
