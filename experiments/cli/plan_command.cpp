@@ -69,6 +69,10 @@ std::string plan_text(const Plan& plan) {
     if (!plan.render.passes.empty()) {
         text += fmt::format(", with {}", fmt::join(plan.render.passes, ", "));
     }
+    for (const render::SmoothPass& smooth : plan.render.smooth) {
+        text +=
+            fmt::format(", {} of 1/{} of the samples spread over {:g} px", smooth.pass, smooth.fewer, smooth.sigma_px);
+    }
     text += fmt::format("; a sample costs 1/{:.2g} of the full model's", plan.speed_up);
     if (plan.noise_ev > plan.tolerance.ev) {
         const double times = plan.noise_ev / plan.tolerance.ev;

@@ -88,17 +88,12 @@ std::string pass_list() {
 
 /// Throws InputError where these passes do not add up to a picture.
 void check_passes(const std::vector<std::string>& passes, const RenderJobOptions& options) {
-    for (const std::string& pass : passes) {
-        if (std::ranges::count(passes, pass) > 1) {
-            throw InputError(fmt::format("--passes names {} twice, expected each once", pass));
-        }
+    if (const std::string conflict = render::pass_conflict(passes); !conflict.empty()) {
+        throw InputError("--passes " + conflict);
     }
     const auto has = [&](const char* name) { return std::ranges::find(passes, name) != passes.end(); };
-    if (has("everything") && passes.size() > 1) {
-        throw InputError("--passes has everything beside others, of which it is the sum; expected it alone");
-    }
-    if (!passes.empty() && options.has_features && !has("imaged")) {
-        throw InputError("--features goes with the pass imaged, expected it in --passes");
+    if (!passes.empty() && options.has_features && !has("imaged") && !has("straight")) {
+        throw InputError("--features goes with the pass imaged or straight, expected one of them in --passes");
     }
 }
 
@@ -139,7 +134,7 @@ studies::Plan take_plan(const RenderJobOptions& options, RenderWishes& wishes, r
         pilot, setup, {.seed = options.common.seed, .threads = options.common.threads, .cache = Cache::standard()});
     setup = studies::planned_setup(std::move(setup), plan.render);
     if (!plan.render.passes.empty()) {
-        wishes.passes = {"imaged", "direct"};
+        wishes.passes = {"straight"};
         wishes.passes.insert(wishes.passes.end(), plan.render.passes.begin(), plan.render.passes.end());
     }
     print_message("lensproof: planned: {}\n", plan_text(pilot));
@@ -220,6 +215,7 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
         print_message("lensproof: exposed automatically: {:.3g} s at ISO {:g}\n", time_s, iso);
     }
     job.samples = static_cast<std::uint32_t>(setup.samples_per_pixel);
+    job.smooth = plan ? plan->render.smooth : std::vector<render::SmoothPass>();
     job.sensor = setup.sensor;
     job.json["scene"] = options.scene;
     job.json["lens"] = lens ? lens->id : "";

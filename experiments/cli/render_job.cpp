@@ -8,6 +8,7 @@
 #include <ctime>
 #include <set>
 
+#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/write_file.h"
@@ -47,6 +48,12 @@ render::SampleRange range_of(const RenderJob& job, const RenderJobOptions& optio
                         options.shard, samples, render::kSamplesPerBlock, most));
     }
     return shard.part_of(samples);
+}
+
+/// Nothing where the pass's light is not known to be smooth.
+const render::SmoothPass* smoothness_of(const RenderJob& job, const std::string& pass) {
+    const auto found = std::ranges::find(job.smooth, pass, &render::SmoothPass::pass);
+    return found == job.smooth.end() ? nullptr : &*found;
 }
 
 render::RenderGoal goal_of(const RenderJobOptions& options) {
@@ -377,10 +384,14 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
 
     std::vector<render::RenderState> passes;
     for (std::size_t i = 0; i < job.renders.size(); ++i) {
-        passes.emplace_back(job.renders[i].film, range_of(job, options), job.passes[i]);
+        render::SampleRange range = range_of(job, options);
+        if (const render::SmoothPass* smooth = smoothness_of(job, job.passes[i])) {
+            range.end = range.first + (range.end - range.first + smooth->fewer - 1) / smooth->fewer;
+        }
+        passes.emplace_back(job.renders[i].film, range, job.passes[i]);
     }
     if (!options.checkpoint.empty()) {
-        if (fs::exists(options.checkpoint)) {
+        if (is_there(options.checkpoint)) {
             render::read_checkpoint(options.checkpoint, identity, passes);
         }
     }
@@ -404,6 +415,11 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     const render::FilmNotes notes = notes_of(job, options, identity);
     if (end == render::RenderEnd::interrupted) {
         return end_early(std::move(json), passes, notes, options, files);
+    }
+    for (render::RenderState& state : passes) {
+        if (const render::SmoothPass* smooth = smoothness_of(job, state.pass)) {
+            state.film = render::smoothed(state.film, smooth->sigma_px, options.common.threads);
+        }
     }
     const render::Picture picture = render::picture_of(passes);
     const Delivery exr = write_somewhere(places_for(files.exr, options, files),

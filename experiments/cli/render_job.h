@@ -5,9 +5,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/base/json.h"
 #include "engine/render/film/film_exr.h"
+#include "engine/render/film/smoothed_film.h"
 #include "engine/render/progressive.h"
 #include "engine/render/raw/raw_sensor.h"
 #include "experiments/cli/command.h"
@@ -52,6 +54,7 @@ struct RenderJob {
     render::RenderIdentity identity;          // "scene", "lens", "settings"; seed and version are added
     render::FilmNotes notes;                  // metadata and colours
     std::uint32_t samples = 0;                // a pixel, the scene's own
+    std::vector<render::SmoothPass> smooth;   // those of the passes whose light is
     std::optional<render::RawSensor> sensor;  // for a raw file beside the film's, of a whole render
     Json json;                                // what the machine-readable result begins with
 };

@@ -112,6 +112,7 @@ TEST(RenderPasses, RefuseWhatDoesNotAddUp) {
     expect_no_render("imaged,halo", {"--passes", "halo"});
     expect_no_render("ghosts,ghosts", {"--passes", "ghosts twice"});
     expect_no_render("everything,ghosts", {"--passes", "everything"});
+    expect_no_render("straight,direct", {"--passes", "straight", "direct"});
     expect_refused(place, {"render", "scene.toml", "--passes", "ghosts", "--features", "-o", "a.exr"},
                    {"--features", "imaged"});
     place.file("scene.toml",

@@ -157,6 +157,29 @@ TEST(PlanCommand, APlannedPictureHasTheSameBytesInEveryRun) {
     EXPECT_EQ(place.content("1.exr"), place.content("2.exr"));
 }
 
+// Bare glass's ghosts of an evenly lit wall are smooth: they take a sixteenth of the samples, and have the light that
+// they have by all of them, within four of their errors, which are a twentieth of it at most.
+TEST(PlanCommand, SmoothLightTakesFewerSamples) {
+    const Workplace place;
+    std::string scene = kScene;
+    scene.replace(scene.find("pixels = [600, 400]"), 19, "pixels = [150, 100]");
+    place.file("scene.toml", scene);
+    const Json planned = place.json({"render", "scene.toml", "--model", "auto", "--tolerance", "0.5px,0.02ev,1de",
+                                     "--spp", "32", "-o", "auto.exr"});
+    ASSERT_EQ(planned["plan"]["passes"], Json({"ghosts"}));
+    const Json& smooth = planned["plan"]["smooth"]["ghosts"];
+    EXPECT_EQ(smooth["fewer_samples"], 16);
+    EXPECT_GE(smooth["sigma_px"], 2.0);
+    const Json all =
+        place.json({"render", "scene.toml", "--passes", "straight,ghosts", "--spp", "32", "-o", "all.exr"});
+    EXPECT_EQ(planned["passes"][0]["samples_per_pixel"], 32.0);
+    EXPECT_EQ(planned["passes"][1]["samples_per_pixel"], 2.0);
+    EXPECT_EQ(all["passes"][1]["samples_per_pixel"], 32.0);
+    const double light = all["passes"][1]["light"].get<double>();
+    EXPECT_NEAR(planned["passes"][1]["light"].get<double>(), light, 0.2 * light);
+    EXPECT_LT(planned["relative_error"].get<double>(), all["relative_error"].get<double>());
+}
+
 TEST(PlanCommand, RefusesTolerancesThatSayNothing) {
     const Workplace place;
     place.file("scene.toml", kScene);

@@ -22,6 +22,10 @@ Render imaged(const View& view, const Integrator& integrator) {
     return integrator.render(scattered);
 }
 
+Render straight(const View& view, const Integrator& integrator) {
+    return integrator.render(view);
+}
+
 Render direct(const View& view, const Integrator& integrator) {
     View seen = view;
     seen.paths.max_bounces = 0;
@@ -92,9 +96,27 @@ const std::vector<Pass>& passes() {
         {"waves",
          "suns, imaged and diffracted by waves: in the place of what \"direct\" and \"diffracted\" have of them",
          waves},
-        {"everything", "all of these but the last two at once, by chance: slow, and a judge of them", everything},
+        {"straight", "imaged and direct, by the same paths: half the time of the two", straight, true, true},
+        {"everything", "all of these but diffracted and waves at once, by chance: slow, and a judge of them",
+         everything, false, true},
     };
     return all;
+}
+
+std::string pass_conflict(const std::vector<std::string>& names) {
+    const auto count = [&](const std::string& name) { return std::ranges::count(names, name); };
+    for (const std::string& name : names) {
+        if (count(name) > 1) {
+            return fmt::format("names {} twice, expected each once", name);
+        }
+    }
+    if (count("everything") > 0 && names.size() > 1) {
+        return "has everything beside others, of which it is the sum; expected it alone";
+    }
+    if (count("straight") > 0 && count("imaged") + count("direct") > 0) {
+        return "has straight beside imaged or direct, which it is the sum of; expected it in their place";
+    }
+    return {};
 }
 
 const Pass& pass_named(const std::string& name) {

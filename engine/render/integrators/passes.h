@@ -20,8 +20,9 @@ namespace lensproof::render {
 ///   waves         straight from a sun, imaged and diffracted: in the place of what `direct` and `diffracted` have of
 ///   it
 ///
-/// And one that is none of them but what the first five add up to:
+/// And two that are none of them, but what the first two and what the first five add up to:
 ///
+///   straight      what images and what is seen, by the same paths: half the time of the two
 ///   everything    at every surface and wall it is left to chance what becomes of the light: slow, and a judge of
 ///   others
 struct Pass {
@@ -30,9 +31,13 @@ struct Pass {
     /// `integrator`: that of paths which image.
     Render (*render)(const View& view, const Integrator& integrator) = nullptr;
     bool goes_straight = false;  // through the stop
+    bool is_sum = false;         // of other passes
 };
 
 const std::vector<Pass>& passes();
+
+/// Why these do not add up to a picture: one stands twice, or beside what it is a part of. Else empty.
+std::string pass_conflict(const std::vector<std::string>& names);
 
 /// By which integrator each pass is rendered that goes straight through the stop.
 struct PassIntegrators {

@@ -22,7 +22,7 @@ constexpr int kMostVariants = 100;
 std::vector<std::string> pass_names() {
     std::vector<std::string> names;
     for (const render::Pass& pass : render::passes()) {
-        if (pass.name != "everything") {  // the sum of others
+        if (!pass.is_sum) {
             names.push_back(pass.name);
         }
     }

@@ -24,4 +24,8 @@ Effect shift_effect(const Pilot& pilot, const std::string& name, const std::arra
 /// How a blur of that rms radius, in the scene's pixels, is seen.
 Effect blur_effect(const Pilot& pilot, const std::string& name, const PixelSpread& spread_px);
 
+/// Light as an even veil, a share of the picture's mean: what is more of it may be seen by so much, with the share's
+/// own error.
+Contribution veil_contribution(const Pilot& pilot, const Measured& share);
+
 }  // namespace lensproof::studies

@@ -12,6 +12,14 @@ inline void fields(JsonArchive& json, Measured& measured) {
     json.field("value", measured.value).field("standard_error", measured.standard_error);
 }
 
+/// With two standard errors more, and with two less.
+inline double at_most(const Measured& measured) {
+    return measured.value + 2.0 * measured.standard_error;
+}
+inline double at_least(const Measured& measured) {
+    return measured.value - 2.0 * measured.standard_error;
+}
+
 /// The root of a square that was estimated, which noise may have made negative.
 Measured root(const Measured& square);
 

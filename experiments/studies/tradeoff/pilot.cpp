@@ -43,8 +43,7 @@ Image Pilot::picture(const render::Render& render, int samples, double& ns_per_s
 Pilot::Pictures Pilot::render(const render::SceneSetup& setup, const std::vector<std::string>& stray_passes,
                               int first_seed) const {
     render::PreparedScene scene(with_pixels(setup, settings_.pixels), render::PixelFilter{}, settings_.cache);
-    std::vector<std::string> passes = {"imaged", "direct"};
-    const std::size_t straight = passes.size();
+    std::vector<std::string> passes = {"straight"};
     passes.insert(passes.end(), stray_passes.begin(), stray_passes.end());
     Pictures pictures;
     for (int seed = 0; seed < settings_.seeds; ++seed) {
@@ -53,13 +52,18 @@ Pilot::Pictures Pilot::render(const render::SceneSetup& setup, const std::vector
             pictures.rgb.push_back(picture(scene.render(own, false), settings_.samples, pictures.ns_per_sample));
             continue;
         }
-        const std::vector<render::Render> renders = scene.render(passes, own, false, false);
+        const std::vector<render::Render> renders = scene.render(passes, own, false, settings_.guides_ghosts);
         for (std::size_t i = 0; i < renders.size(); ++i) {
-            const int samples = i < straight ? settings_.samples : settings_.stray_samples;
-            Image more = picture(renders[i], samples, pictures.ns_per_sample);
+            if (settings_.guides_ghosts && seed == 0 && i > 0) {
+                render::render_film(renders[i], {.first = 0, .end = 1}, settings_.probe.threads);  // the search
+            }
+            double ns = 0.0;
+            Image more = picture(renders[i], i == 0 ? settings_.samples : settings_.stray_samples, ns);
+            pictures.ns_per_sample += ns;
             if (i == 0) {
                 pictures.rgb.push_back(std::move(more));
             } else {
+                pictures.stray_ns[passes[i]] += ns;
                 Image& sum = pictures.rgb.back();
                 std::ranges::transform(sum.pixels, more.pixels, sum.pixels.begin(), std::plus<>());
             }

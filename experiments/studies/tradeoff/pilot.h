@@ -1,5 +1,6 @@
 // experiments/studies/tradeoff/pilot.h — a small render of a scene with the full model, from which plans are made.
 #pragma once
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,8 +12,11 @@ namespace lensproof::studies {
 
 struct PilotSettings {
     int pixels = 2000;
-    int samples = 16;       // of a pixel and a seed
-    int stray_samples = 8;  // the same, of light that goes astray
+    int samples = 16;            // of a pixel and a seed
+    int stray_samples = 8;       // the same, of light that goes astray
+    int smooth_pixels = 60'000;  // of what tells how smooth stray light is (smooth_light.h)
+    int smooth_samples = 6;      // of a pixel and a seed
+    bool guides_ghosts = false;  // a search for where they enter, which takes seconds a lens, as a render's
     int seeds = 2;
     int points = 24;
     ProbeSettings probe{.rays = 96, .repetitions = 2};
@@ -24,13 +28,15 @@ class Pilot {
   public:
     Pilot(const render::SceneSetup& setup, const PilotSettings& settings);
 
-    /// Pictures of the pilot's size, a seed each, and what a sample takes of one core, of all passes together, ns.
+    /// Pictures of the pilot's size, a seed each, and what a sample takes of one core, ns: of all passes together, and
+    /// of those of stray light.
     struct Pictures {
         std::vector<formats::Image> rgb;
         double ns_per_sample = 0.0;
+        std::map<std::string, double> stray_ns = {};
     };
-    /// Of what goes straight, and of stray light in these passes, with seeds from `first_seed` on; ghosts without a
-    /// search for where they enter. Throws InputError where the camera has no such light.
+    /// Of what goes straight, and of stray light in these passes, with seeds from `first_seed` on. Throws InputError
+    /// where the camera has no such light.
     [[nodiscard]] Pictures render(const render::SceneSetup& setup, const std::vector<std::string>& stray_passes,
                                   int first_seed) const;
     /// The full model's pictures with the light of one of its passes, likewise; the time is that of the pass alone.

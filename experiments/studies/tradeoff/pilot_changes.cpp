@@ -51,6 +51,29 @@ Image with_gain(const Image& picture, const PixelGain& gain) {
     return changed;
 }
 
+Vec3d mean_rgb(const Image& picture) {
+    Vec3d sum;
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            sum = sum + Vec3d{picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2)};
+        }
+    }
+    return (1.0 / (static_cast<double>(picture.width) * picture.height)) * sum;
+}
+
+Image with_veil(const Image& picture, double share) {
+    const Vec3d veil = share * mean_rgb(picture);
+    Image changed = picture;
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            changed.at(x, y, 0) += static_cast<float>(veil.x);
+            changed.at(x, y, 1) += static_cast<float>(veil.y);
+            changed.at(x, y, 2) += static_cast<float>(veil.z);
+        }
+    }
+    return changed;
+}
+
 Image with_shift(const Image& picture, const PixelShift& shift) {
     Image changed = picture;
     for (int y = 0; y < picture.height; ++y) {

@@ -10,6 +10,8 @@
 #include <span>
 
 #include "engine/base/input_error.h"
+#include "experiments/studies/tradeoff/effect_kinds.h"
+#include "experiments/studies/tradeoff/smooth_light.h"
 
 namespace lensproof::studies {
 
@@ -59,6 +61,12 @@ struct Reduced {
     double ns_per_sample = 0.0;
 };
 
+/// What the planned samples of a pass are fewer by.
+double fewer(const PlannedRender& planned, const std::string& pass) {
+    const auto smooth = std::ranges::find(planned.smooth, pass, &render::SmoothPass::pass);
+    return smooth == planned.smooth.end() ? 1.0 : smooth->fewer;
+}
+
 /// Of a planned render: its stray passes are in it where `full` has any.
 PlannedCheck check(const Pilot& pilot, const PlannedRender& planned, const std::vector<std::string>& passes,
                    const Pilot::Pictures& full) {
@@ -71,12 +79,33 @@ PlannedCheck check(const Pilot& pilot, const PlannedRender& planned, const std::
     const Measured& image = field.frame.image_px;
     const Measured& blur = field.frame.blur_px;
     const Measured whole = {std::abs(found.exposure_ev.value), found.exposure_ev.standard_error};
+    double spared_ns = 0.0;
+    for (const auto& [pass, ns] : pictures.stray_ns) {
+        spared_ns += ns - ns / fewer(planned, pass);
+    }
     return {
         .error = {.px = {std::hypot(image.value, blur.value), std::hypot(image.standard_error, blur.standard_error)},
                   .ev = std::ranges::max(field.frame.exposure_ev, whole, {}, &Measured::value),
                   .ciede2000 = found.ciede2000.bias},
-        .ns_per_sample = pictures.ns_per_sample,
+        .ns_per_sample = pictures.ns_per_sample - spared_ns,
         .full_ns_per_sample = full.ns_per_sample};
+}
+
+/// Adds what smoothing takes from these passes.
+void add_smoothing(const Pilot& pilot, const PlannedRender& planned, const std::vector<std::string>& passes,
+                   Contribution& error) {
+    const auto add = [](Measured& sum, const Measured& more) {
+        sum = {sum.value + more.value, std::hypot(sum.standard_error, more.standard_error)};
+    };
+    for (const render::SmoothPass& smooth : planned.smooth) {
+        if (std::ranges::count(passes, smooth.pass) == 0) {
+            continue;
+        }
+        const Contribution lost =
+            veil_contribution(pilot, smooth_light(pilot, smooth.pass, pilot.settings().seeds).lost(smooth.sigma_px));
+        add(error.ev, lost.ev);
+        add(error.ciede2000, lost.ciede2000);
+    }
 }
 
 /// Parts of a time that are saved.
@@ -102,6 +131,7 @@ class Planner {
             full_ns_ += effect.ns_per_sample;
         }
         decide_stray_light(std::move(stray));
+        choose_smoothings();
         const auto cheapest = std::ranges::find_if(candidates(), [&](const CandidateRender& candidate) {
             return is_reference_render(candidate) || without(candidate).keeps(tolerance_);
         });
@@ -205,6 +235,28 @@ class Planner {
         }
     }
 
+    /// Of passes that are rendered: spread as widely as their light is smooth, with fewer samples.
+    void choose_smoothings() {
+        for (PlannedEffect& planned : plan_.effects) {
+            const std::string& pass = planned.effect.pass;
+            if (!planned.is_modelled || pass.empty()) {
+                continue;
+            }
+            const SmoothLight light = smooth_light(pilot_, pass, 0);
+            for (const double sigma_px : kSmoothings) {
+                LeftOut with = budget_;
+                with.add(veil_contribution(pilot_, light.lost(sigma_px)));
+                if (with.keeps(tolerance_)) {
+                    budget_ = with;
+                    plan_.render.smooth.push_back({pass, sigma_px, kFewerWhereSmooth});
+                    planned.why += fmt::format("; smooth as it is, spread over {:g} px it needs 1/{} of the samples",
+                                               sigma_px, kFewerWhereSmooth);
+                    break;
+                }
+            }
+        }
+    }
+
     /// The cheapest of these cameras that the check does not refuse.
     void choose_camera(std::span<const CandidateRender> cameras) {
         const Pilot::Pictures full = pilot_.render(pilot_.setup(), {}, pilot_.settings().seeds);
@@ -236,7 +288,7 @@ class Planner {
     [[nodiscard]] double kept_stray_ns() const {
         double ns = 0.0;
         for (const PlannedEffect& planned : plan_.effects) {
-            ns += planned.is_modelled ? planned.effect.ns_per_sample : 0.0;
+            ns += planned.is_modelled ? planned.effect.ns_per_sample / fewer(plan_.render, planned.effect.pass) : 0.0;
         }
         return ns;
     }
@@ -304,7 +356,9 @@ PlannedCheck check_plan(const render::SceneSetup& setup, const PlannedRender& pl
     std::vector<std::string> kept;
     std::ranges::copy_if(passes, std::back_inserter(kept),
                          [&](const std::string& pass) { return std::ranges::count(planned.passes, pass) > 0; });
-    return check(pilot, planned, kept, pilot.render(pilot.setup(), passes, settings.seeds));
+    PlannedCheck found = check(pilot, planned, kept, pilot.render(pilot.setup(), passes, settings.seeds));
+    add_smoothing(pilot, planned, kept, found.error);
+    return found;
 }
 
 Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, const PilotSettings& settings) {

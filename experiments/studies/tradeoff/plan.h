@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/render/film/smoothed_film.h"
 #include "experiments/studies/tradeoff/effects.h"
 #include "experiments/studies/tradeoff/rungs.h"
 
@@ -14,7 +15,8 @@ namespace lensproof::studies {
 struct PlannedRender {
     Rung rung;
     int max_bounces = 0;
-    std::vector<std::string> passes;  // beside imaged and direct
+    std::vector<std::string> passes;         // beside what goes straight
+    std::vector<render::SmoothPass> smooth;  // of these
 
     /// Whether it has fewer wavelengths or scatterings than the scene.
     [[nodiscard]] bool is_reduced(const render::SceneSetup& setup) const {

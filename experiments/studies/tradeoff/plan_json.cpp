@@ -25,6 +25,9 @@ Json plan_json(const Plan& plan, PlanTimes times) {
               {"max_bounces", plan.render.max_bounces},
               {"passes", plan.render.passes},
               {"effects", Json::list()}};
+    for (const render::SmoothPass& smooth : plan.render.smooth) {
+        json["smooth"][smooth.pass] = {{"sigma_px", smooth.sigma_px}, {"fewer_samples", smooth.fewer}};
+    }
     json["wavelengths"] = plan.render.rung.wavelengths ? Json(*plan.render.rung.wavelengths) : Json(nullptr);
     for (const PlannedEffect& planned : plan.effects) {
         Json effect{{"effect", planned.effect.name},

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -46,32 +46,9 @@ struct Veil {
     double ns_per_sample = 0.0;  // of the pass that renders it
 };
 
-/// As an even veil over the picture: what is more of it may be seen by so much, with the share's own error.
+/// As an even veil over the picture.
 Effect veil_effect(const Pilot& pilot, const std::string& name, const Veil& veil) {
-    const auto with = [&](double share) {
-        std::vector<Image> veiled = pilot.full().rgb;
-        for (Image& picture : veiled) {
-            const std::size_t colours = picture.channels.size();
-            std::vector<double> mean(colours);
-            for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-                mean[i % colours] += static_cast<double>(picture.pixels[i]) * static_cast<double>(colours) /
-                                     static_cast<double>(picture.pixels.size());
-            }
-            for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-                picture.pixels[i] += static_cast<float>(share * mean[i % colours]);
-            }
-        }
-        return difference(pilot, veiled);
-    };
-    const double error = veil.share.standard_error;
-    Effect effect{.name = name, .contribution = with(veil.share.value), .ns_per_sample = veil.ns_per_sample};
-    const Contribution more = error > 0.0 ? with(veil.share.value + error) : effect.contribution;
-    const auto widen = [](Measured& part, const Measured& of_more) {
-        part.standard_error = std::hypot(part.standard_error, of_more.value - part.value);
-    };
-    widen(effect.contribution.ev, more.ev);
-    widen(effect.contribution.ciede2000, more.ciede2000);
-    return effect;
+    return {.name = name, .contribution = veil_contribution(pilot, veil.share), .ns_per_sample = veil.ns_per_sample};
 }
 
 /// Of a pass: its light over all that goes straight.
@@ -152,6 +129,25 @@ Contribution airy_core(const Pilot& pilot) {
 }
 
 }  // namespace
+
+Contribution veil_contribution(const Pilot& pilot, const Measured& share) {
+    const auto with = [&](double part) {
+        std::vector<Image> veiled;
+        std::ranges::transform(pilot.full().rgb, std::back_inserter(veiled),
+                               [&](const Image& picture) { return with_veil(picture, part); });
+        return difference(pilot, veiled);
+    };
+    Contribution found = with(share.value);
+    if (share.standard_error > 0.0) {
+        const Contribution more = with(share.value + share.standard_error);
+        const auto widen = [](Measured& part, const Measured& of_more) {
+            part.standard_error = std::hypot(part.standard_error, of_more.value - part.value);
+        };
+        widen(found.ev, more.ev);
+        widen(found.ciede2000, more.ciede2000);
+    }
+    return found;
+}
 
 std::vector<Effect> stray_effects(const Pilot& pilot) {
     std::vector<Effect> effects = ghosts_and_barrel(pilot);

@@ -16,12 +16,6 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr double kCovered = 2.0;  // standard errors that a contribution is taken to be larger by
-
-double at_most(const Measured& measured) {
-    return measured.value + kCovered * measured.standard_error;
-}
-
 struct TolerancePart {
     Measured found;
     double limit = 0.0;
@@ -69,9 +63,7 @@ Tolerance parse_tolerance(const std::string& text) {
 }
 
 Contribution surely(const Contribution& found) {
-    const auto least = [](const Measured& measured) {
-        return Measured{std::max(0.0, measured.value - kCovered * measured.standard_error), 0.0};
-    };
+    const auto least = [](const Measured& measured) { return Measured{std::max(0.0, at_least(measured)), 0.0}; };
     return {least(found.px), least(found.ev), least(found.ciede2000)};
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "engine/base/angle.h"
 #include "engine/render/film/film_image.h"
@@ -89,6 +90,29 @@ TEST(PreparedScene, StrayLightHasAFilterOfItsOwn) {
     EXPECT_NE(own, astray(camera, cache));
     PreparedScene scene(under_a_sun(camera), box, cache, {}, gaussian);
     EXPECT_TRUE(scene.render({"imaged", "ghosts"}, 1, false, false).front().film.filter.is_box());
+}
+
+// What goes straight is one film, with the bits of the scene's own, and the sum of the two that it may be parted into.
+TEST(PreparedScene, StraightLightIsWhatImagesAndWhatIsSeen) {
+    const std::string ball =
+        "[[materials]]\nname = \"grey\"\nkind = \"diffuse\"\nreflectance = 0.5\n"
+        "[[objects]]\nname = \"ball\"\nshape = \"sphere\"\nmaterial = \"grey\"\nradius_mm = 1000\n"
+        "translate_mm = [0, 0, 5000]\n";
+    PreparedScene scene(under_a_sun("[camera]\nlens = \"tessar\"\n", {}, ball), PixelFilter{}, Cache());
+    constexpr SampleRange kSamples{.first = 0, .end = 64};
+    const auto rendered = [&](const Render& render) { return film_rgb(render_film(render, kSamples, 1)); };
+    const std::vector<float> straight = rendered(scene.render({"straight"}, 1, false).front()).pixels;
+    EXPECT_EQ(straight, rendered(scene.render(1, false)).pixels);
+    std::vector<double> sums(3);
+    const std::vector<Render> parts = scene.render({"imaged", "direct"}, 1, false);
+    sums[0] = std::accumulate(straight.begin(), straight.end(), 0.0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::vector<float> part = rendered(parts[i]).pixels;
+        sums[1 + i] = std::accumulate(part.begin(), part.end(), 0.0);
+    }
+    // The same paths, of which each knows the half of what they find; but for roundings of float.
+    EXPECT_NEAR(sums[1] + sums[2], sums[0], 1e-5 * sums[0]);
+    EXPECT_GT(sums[1], 0.0);
 }
 
 // Where ghosts are searched for decides how noisy they are, and nothing else: both ways gather the same light, within
