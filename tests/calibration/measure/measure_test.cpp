@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "calibration/self_test/simulated_chart.h"
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 

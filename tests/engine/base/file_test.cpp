@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "engine/base/write_file.h"
 #include "tests/complaint.h"
 #include "tests/test_folder.h"
 
