@@ -286,7 +286,6 @@ PlannedOutcome hold_to_account(const SceneCase& planned, const Tolerance& tolera
         other.samples *= 4;
         other.stray_samples *= 8;
         other.smooth_samples *= 2;
-        other.guides_ghosts = true;
         const PlannedCheck found = check_plan(planned.setup, plan.render, accountable_passes(plan), other);
         outcome.model = plan.render.rung.name;
         outcome.predicted = plan.checked;

@@ -52,11 +52,8 @@ Pilot::Pictures Pilot::render(const render::SceneSetup& setup, const std::vector
             pictures.rgb.push_back(picture(scene.render(own, false), settings_.samples, pictures.ns_per_sample));
             continue;
         }
-        const std::vector<render::Render> renders = scene.render(passes, own, false, settings_.guides_ghosts);
+        const std::vector<render::Render> renders = scene.render(passes, own, false, false);
         for (std::size_t i = 0; i < renders.size(); ++i) {
-            if (settings_.guides_ghosts && seed == 0 && i > 0) {
-                render::render_film(renders[i], {.first = 0, .end = 1}, settings_.probe.threads);  // the search
-            }
             double ns = 0.0;
             Image more = picture(renders[i], i == 0 ? settings_.samples : settings_.stray_samples, ns);
             pictures.ns_per_sample += ns;

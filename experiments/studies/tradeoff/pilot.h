@@ -16,7 +16,6 @@ struct PilotSettings {
     int stray_samples = 8;       // the same, of light that goes astray
     int smooth_pixels = 60'000;  // of what tells how smooth stray light is (smooth_light.h)
     int smooth_samples = 6;      // of a pixel and a seed
-    bool guides_ghosts = false;  // a search for where they enter, which takes seconds a lens, as a render's
     int seeds = 2;
     int points = 24;
     ProbeSettings probe{.rays = 96, .repetitions = 2};
@@ -35,7 +34,8 @@ class Pilot {
         double ns_per_sample = 0.0;
         std::map<std::string, double> stray_ns = {};
     };
-    /// Of what goes straight, and of stray light in these passes, with seeds from `first_seed` on. Throws InputError
+    /// Of what goes straight, and of stray light in these passes, with seeds from `first_seed` on; ghosts without a
+    /// search for where they enter, so noisier and quicker than a render's. Throws InputError
     /// where the camera has no such light.
     [[nodiscard]] Pictures render(const render::SceneSetup& setup, const std::vector<std::string>& stray_passes,
                                   int first_seed) const;

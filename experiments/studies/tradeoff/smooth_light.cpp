@@ -96,8 +96,7 @@ SmoothLight smooth_light(const Pilot& pilot, const std::string& pass, int first_
     SmoothLight::Films films;
     for (std::size_t i = 0; i < films.size(); ++i) {
         const std::uint64_t seed = settings.probe.seed + static_cast<std::uint64_t>(first_seed) + i;
-        const std::vector<render::Render> renders =
-            scene.render(std::vector{pass}, seed, false, settings.guides_ghosts);
+        const std::vector<render::Render> renders = scene.render(std::vector{pass}, seed, false, false);
         const render::SampleRange range{.first = 0, .end = static_cast<std::uint32_t>(settings.smooth_samples)};
         films[i] = render::film_rgb(render::render_film(renders.front(), range, settings.probe.threads));
     }
