@@ -385,7 +385,8 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     std::vector<render::RenderState> passes;
     for (std::size_t i = 0; i < job.renders.size(); ++i) {
         render::SampleRange range = range_of(job, options);
-        if (const render::SmoothPass* smooth = smoothness_of(job, job.passes[i])) {
+        // With --noise a film is judged as it is, before it is spread.
+        if (const render::SmoothPass* smooth = smoothness_of(job, job.passes[i]); smooth && !(options.noise > 0.0)) {
             range.end = range.first + (range.end - range.first + smooth->fewer - 1) / smooth->fewer;
         }
         passes.emplace_back(job.renders[i].film, range, job.passes[i]);

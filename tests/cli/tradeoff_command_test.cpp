@@ -158,7 +158,8 @@ TEST(PlanCommand, APlannedPictureHasTheSameBytesInEveryRun) {
 }
 
 // Bare glass's ghosts of an evenly lit wall are smooth: they take a sixteenth of the samples, and have the light that
-// they have by all of them, within four of their errors, which are a twentieth of it at most.
+// they have by all of them, within four of its errors (eight seeds scatter by 8 % with 2 samples, by 2 % with 32).
+// With --noise, which judges pixels before they are spread, they take as many as it asks for.
 TEST(PlanCommand, SmoothLightTakesFewerSamples) {
     const Workplace place;
     std::string scene = kScene;
@@ -176,8 +177,14 @@ TEST(PlanCommand, SmoothLightTakesFewerSamples) {
     EXPECT_EQ(planned["passes"][1]["samples_per_pixel"], 2.0);
     EXPECT_EQ(all["passes"][1]["samples_per_pixel"], 32.0);
     const double light = all["passes"][1]["light"].get<double>();
-    EXPECT_NEAR(planned["passes"][1]["light"].get<double>(), light, 0.2 * light);
+    EXPECT_NEAR(planned["passes"][1]["light"].get<double>(), light, 0.33 * light);
     EXPECT_LT(planned["relative_error"].get<double>(), all["relative_error"].get<double>());
+    scene.replace(scene.find("pixels = [150, 100]"), 19, "pixels = [45, 30]");
+    place.file("small.toml", scene);
+    const Json judged = place.json({"render", "small.toml", "--model", "auto", "--tolerance", "0.5px,0.02ev,1de",
+                                    "--noise", "2", "--spp", "256", "-o", "noise.exr"});
+    EXPECT_EQ(judged["run"]["ended_by"], "noise");
+    EXPECT_LT(judged["passes"][1]["samples_per_pixel"], 256.0);
 }
 
 TEST(PlanCommand, RefusesTolerancesThatSayNothing) {

@@ -1,7 +1,9 @@
 #include "engine/render/film/smoothed_film.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -25,104 +27,86 @@ cv::Mat sums_around(const cv::Mat& plane, const cv::Mat& weights) {
     return sums;
 }
 
-/// A film's numbers, a plane each: what a pixel is and the variance of that, by camera paths and by light paths.
+/// What camera paths, or light paths, have made of a film: its numbers, a plane each.
 struct FilmPlanes {
-    std::array<std::vector<cv::Mat>, 2> means;  // R, G, B and the spectral layers
-    std::array<std::vector<cv::Mat>, 2> variances;
+    std::vector<cv::Mat> means;  // R, G, B and the spectral layers
+    std::vector<cv::Mat> variances;
 
-    explicit FilmPlanes(const Film& film) {
-        const std::size_t layers = film.layout().layer_nm.size();
-        const auto planes = [&](std::size_t count) {
-            std::vector<cv::Mat> all(count);
-            for (cv::Mat& plane : all) {
+    FilmPlanes(const Film& film, std::size_t layers) : means(kColours + layers), variances(kColours) {
+        for (std::vector<cv::Mat>* planes : {&means, &variances}) {
+            for (cv::Mat& plane : *planes) {
                 plane.create(film.height(), film.width(), CV_64F);
-            }
-            return all;
-        };
-        means = {planes(3 + layers), planes(3 + layers)};
-        variances = {planes(3), planes(3)};
-        std::vector<double> of_both(layers);
-        std::vector<double> of_light(layers);
-        for (int y = 0; y < film.height(); ++y) {
-            for (int x = 0; x < film.width(); ++x) {
-                film.layers(x, y, of_both);
-                film.light_layers(x, y, of_light);
-                put(0, x, y, film.camera_estimate(x, y));
-                put(1, x, y, film.light_estimate(x, y));
-                for (std::size_t k = 0; k < layers; ++k) {
-                    means[0][3 + k].at<double>(y, x) = of_both[k] - of_light[k];
-                    means[1][3 + k].at<double>(y, x) = of_light[k];
-                }
             }
         }
     }
 
-    [[nodiscard]] PixelEstimate estimate(std::size_t i, int x, int y) const {
+    void put(int x, int y, const PixelEstimate& estimate, const std::vector<double>& layers) {
+        const std::array rgb = {estimate.rgb.x, estimate.rgb.y, estimate.rgb.z};
+        const std::array variance = {estimate.variance.x, estimate.variance.y, estimate.variance.z};
+        for (std::size_t c = 0; c < kColours; ++c) {
+            means[c].at<double>(y, x) = rgb[c];
+            variances[c].at<double>(y, x) = variance[c];
+        }
+        for (std::size_t k = 0; k < layers.size(); ++k) {
+            means[kColours + k].at<double>(y, x) = layers[k];
+        }
+    }
+
+    PixelEstimate take(int x, int y, std::vector<double>& layers) const {
+        for (std::size_t k = 0; k < layers.size(); ++k) {
+            layers[k] = means[kColours + k].at<double>(y, x);
+        }
         const auto at = [&](const std::vector<cv::Mat>& planes) {
             return Vec3d{planes[0].at<double>(y, x), planes[1].at<double>(y, x), planes[2].at<double>(y, x)};
         };
-        return {.rgb = at(means[i]), .variance = at(variances[i])};
-    }
-
-    void layers(std::size_t i, int x, int y, std::vector<double>& of_pixel) const {
-        for (std::size_t k = 0; k < of_pixel.size(); ++k) {
-            of_pixel[k] = means[i][3 + k].at<double>(y, x);
-        }
+        return {.rgb = at(means), .variance = at(variances)};
     }
 
   private:
-    void put(std::size_t i, int x, int y, const PixelEstimate& estimate) {
-        const auto put_each = [&](std::vector<cv::Mat>& planes, const Vec3d& rgb) {
-            planes[0].at<double>(y, x) = rgb.x;
-            planes[1].at<double>(y, x) = rgb.y;
-            planes[2].at<double>(y, x) = rgb.z;
-        };
-        put_each(means[i], estimate.rgb);
-        put_each(variances[i], estimate.variance);
-    }
+    static constexpr std::size_t kColours = 3;
 };
 
 }  // namespace
 
 Film smoothed(const Film& film, double sigma_px, int threads) {
-    FilmPlanes planes(film);
-    const cv::Mat weights = gaussian_weights(sigma_px);
-    const cv::Mat squares = weights.mul(weights);
-    const cv::Mat within = sums_around(cv::Mat::ones(film.height(), film.width(), CV_64F), weights);
-    const cv::Mat within_squared = within.mul(within);
-    std::vector<cv::Mat*> means;
-    std::vector<cv::Mat*> variances;
-    for (std::size_t i = 0; i < 2; ++i) {
-        for (cv::Mat& plane : planes.means[i]) {
-            means.push_back(&plane);
-        }
-        for (cv::Mat& plane : planes.variances[i]) {
-            variances.push_back(&plane);
+    std::vector<double> of_camera(film.layout().layer_nm.size());
+    std::vector<double> of_light(of_camera.size());
+    FilmPlanes camera(film, of_camera.size());
+    FilmPlanes light(film, of_light.size());
+    for (int y = 0; y < film.height(); ++y) {
+        for (int x = 0; x < film.width(); ++x) {
+            film.layers(x, y, of_camera);  // of both
+            film.light_layers(x, y, of_light);
+            std::ranges::transform(of_camera, of_light, of_camera.begin(), std::minus());
+            camera.put(x, y, film.camera_estimate(x, y), of_camera);
+            light.put(x, y, film.light_estimate(x, y), of_light);
         }
     }
-    parallel_for(static_cast<int>(means.size()), threads, [&](int i) {
-        cv::Mat& plane = *means[static_cast<std::size_t>(i)];
-        plane = sums_around(plane, weights) / within;
-    });
-    parallel_for(static_cast<int>(variances.size()), threads, [&](int i) {
-        cv::Mat& plane = *variances[static_cast<std::size_t>(i)];
-        plane = sums_around(plane, squares) / within_squared;
-    });
+    const cv::Mat weights = gaussian_weights(sigma_px);
+    const cv::Mat within = sums_around(cv::Mat::ones(film.height(), film.width(), CV_64F), weights);
+    const auto smooth = [&](std::vector<cv::Mat>& planes, const cv::Mat& by, const cv::Mat& over) {
+        parallel_for(static_cast<int>(planes.size()), threads, [&](int i) {
+            cv::Mat& plane = planes[static_cast<std::size_t>(i)];
+            plane = sums_around(plane, by) / over;
+        });
+    };
+    for (FilmPlanes* planes : {&camera, &light}) {
+        smooth(planes->means, weights, within);
+        smooth(planes->variances, weights.mul(weights), within.mul(within));
+    }
     Film result(film.layout());
     result.set_light_paths(film.light_paths());
     result.set_left_out(film.left_out());
-    std::vector<double> camera_layers(film.layout().layer_nm.size());
-    std::vector<double> light_layers(camera_layers.size());
     for (int y = 0; y < film.height(); ++y) {
         for (int x = 0; x < film.width(); ++x) {
-            planes.layers(0, x, y, camera_layers);
-            planes.layers(1, x, y, light_layers);
+            const PixelEstimate camera_estimate = camera.take(x, y, of_camera);
+            const PixelEstimate light_estimate = light.take(x, y, of_light);
             result.set_pixel(x, y,
                              {.counts = film.counts(x, y),
-                              .camera = planes.estimate(0, x, y),
-                              .camera_layers = camera_layers,
-                              .light = planes.estimate(1, x, y),
-                              .light_layers = light_layers,
+                              .camera = camera_estimate,
+                              .camera_layers = of_camera,
+                              .light = light_estimate,
+                              .light_layers = of_light,
                               .features = film.features(x, y),
                               .coverage = film.coverage(x, y)});
         }

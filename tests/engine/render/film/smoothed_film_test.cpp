@@ -14,14 +14,13 @@ constexpr int kMiddle = kSide / 2;
 constexpr double kSigma = 2.0;
 constexpr TileSamples kAll{.rect = {0, 0, kSide, kSide}, .first = 0, .end = 1};
 
-/// The Gaussian's density at a distance, 1/px²; between pixels' centres it differs from what a pixel gathers by less
-/// than 1/(24 sigma²), a hundredth.
+/// The Gaussian's density at a distance, 1/px².
 double gaussian(double x, double y) {
     return std::exp(-(x * x + y * y) / (2.0 * kSigma * kSigma)) / (2.0 * std::numbers::pi * kSigma * kSigma);
 }
 
-// A point becomes the Gaussian, in colours and layers alike, whatever paths brought it, and keeps its light. The kernel
-// ends at four sigma, beyond which are 1e-4 of it.
+// A point becomes the Gaussian, in colours and layers alike, whatever paths brought it, and keeps its light. Cut off at
+// four sigma along each axis it lacks 1.3e-4 of its light, by which the rest is more: 5e-6 of what stands at its peak.
 TEST(SmoothedFilm, SpreadsAPointAsAGaussian) {
     FilmLayout layout = plain_film(kSide, kSide, 4);
     layout.has_splats = true;
@@ -36,15 +35,15 @@ TEST(SmoothedFilm, SpreadsAPointAsAGaussian) {
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
             const double wanted = gaussian(x - kMiddle, y - kMiddle);
-            EXPECT_NEAR(spread.camera_estimate(x, y).rgb.x, wanted, 2e-4) << x << " " << y;
-            EXPECT_NEAR(spread.light_estimate(x, y).rgb.y, 2.0 * 2.0 * wanted, 8e-4) << x << " " << y;
+            EXPECT_NEAR(spread.camera_estimate(x, y).rgb.x, wanted, 6e-6) << x << " " << y;
+            EXPECT_NEAR(spread.light_estimate(x, y).rgb.y, 2.0 * 2.0 * wanted, 4.0 * 6e-6) << x << " " << y;
             std::array<double, 4> layers{};
             spread.layers(x, y, layers);
-            EXPECT_NEAR(layers[3], 3.0 * wanted, 6e-4) << x << " " << y;
+            EXPECT_NEAR(layers[3], 3.0 * wanted, 3.0 * 6e-6) << x << " " << y;
             light += spread.estimate(x, y).rgb.x;
         }
     }
-    EXPECT_NEAR(light, 3.0, 3e-4);
+    EXPECT_NEAR(light, 3.0, 1e-12);  // all of it lies within the frame
     EXPECT_EQ(spread.light_paths(), film.light_paths());
 }
 

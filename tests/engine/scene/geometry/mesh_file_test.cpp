@@ -173,7 +173,7 @@ TEST_F(MeshFileTest, EveryFormHoldsTheSameBox) {
     expect_box(read_mesh(write("box.obj", kBoxObj), {.mm_per_unit = 25.0}), 25.0, {0, 0, 0});
     expect_box(read_mesh(write("box.ply", box_ply())), 1.0, {0, 0, 0});
     expect_box(read_mesh(write("binary.PLY", box_binary_ply())), 1.0, {0, 0, 0});
-    // Elements that meshes do not have may stand before theirs, and between them.
+    // Elements that meshes do not have may stand before theirs.
     const auto with = [](std::string ply, const std::string& values) {
         const std::string others = "element camera 2\nproperty float view_px\nproperty list uchar uchar flags\n";
         ply.insert(ply.find("element vertex"), others);
