@@ -27,12 +27,32 @@ endif()
 
 set(ROOMS_SCRIPT "${CMAKE_CURRENT_LIST_FILE}")
 
-# Loops over packets for these processors' wide vectors, one of which is chosen at run time. Not under the sanitizers,
-# which these loops are built without: there they would be compiled to no end.
-set(LENSPROOF_AVX OFF)
+# Loops over packets: of each X_kernel.h a text for each level (engine/base/simd_level.h), compiled for its instructions;
+# which of them runs is chosen at run time. They are built without sanitizers, with which g++ 12 works on one of them for
+# more than ten minutes, and in such builds not for wide vectors either.
+set(LEVELS scalar baseline)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$" AND NOT LENSPROOF_SANITIZE)
-    set(LENSPROOF_AVX ON)
+    list(APPEND LEVELS avx2 avx512)
+    set(LEVEL_OPTIONS_avx2 -mavx2)
+    set(LEVEL_OPTIONS_avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        # It takes its own _mm512_undefined for a variable that was forgotten (GCC bug 105593).
+        list(APPEND LEVEL_OPTIONS_avx512 -Wno-maybe-uninitialized -Wno-uninitialized)
+    endif()
+    target_compile_definitions(lensproof_options INTERFACE LENSPROOF_X86_KERNELS)
 endif()
+function(lensproof_loops header texts)
+    string(REGEX REPLACE "\\.h$" "" name ${header})
+    foreach(level IN LISTS LEVELS)
+        set(text "${CMAKE_BINARY_DIR}/loops/${name}_${level}.cpp")
+        file(CONFIGURE OUTPUT "${text}" CONTENT "#include \"@header@\"\n" @ONLY)
+        set_source_files_properties("${text}" PROPERTIES
+            COMPILE_DEFINITIONS LENSPROOF_LEVEL=${level}
+            COMPILE_OPTIONS "$<$<BOOL:${LENSPROOF_SANITIZE}>:-fno-sanitize=all>;${LEVEL_OPTIONS_${level}}")
+        list(APPEND ${texts} "${text}")
+    endforeach()
+    set(${texts} ${${texts}} PARENT_SCOPE)
+endfunction()
 
 function(lensproof_room folder)
     cmake_parse_arguments(ARG "" "" "USES;LINKS;EXPOSES" ${ARGN})
@@ -61,9 +81,10 @@ function(lensproof_room folder)
         add_dependencies(cuda_jobs ${room}_jobs)
         list(APPEND sources $<TARGET_OBJECTS:${room}_jobs>)
     endif()
-    if(NOT LENSPROOF_AVX)
-        list(FILTER sources EXCLUDE REGEX "_avx[0-9]+\\.cpp$")
-    endif()
+    list(FILTER files INCLUDE REGEX "_kernel\\.h$")
+    foreach(header IN LISTS files)
+        lensproof_loops(${header} sources)
+    endforeach()
     string(REPLACE "/" "_" uses "${ARG_USES}")
     foreach(used IN LISTS uses)
         if(NOT TARGET ${used})

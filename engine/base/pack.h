@@ -2,11 +2,18 @@
 #pragma once
 #include <array>
 #include <experimental/simd>
+#include <type_traits>
 
 #include "engine/base/gather.h"
 #include "engine/base/look_up.h"
+#include "engine/base/simd_level.h"
 
 namespace lensproof {
+
+/// One number, or as many as a register of the instructions holds that the file is compiled for.
+template <SimdLevel level, class Scalar>
+using AbiOf = std::conditional_t<level == SimdLevel::scalar, std::experimental::simd_abi::scalar,
+                                 std::experimental::simd_abi::native<Scalar>>;
 
 /// A truth value for each lane of a pack.
 template <class Scalar, class Abi>

@@ -1,6 +1,5 @@
 // engine/base/simd_level.h — how wide this machine's packets can be.
 #pragma once
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -27,18 +26,12 @@ std::vector<SimdLevel> available_simd_levels();
 template <class Loops>
 class LoopsByLevel {
   public:
-    struct Maker {
-        SimdLevel level;
-        Loops (*make)();  // is made of the level's instructions, so it is not called where the machine lacks them
-    };
-
-    explicit LoopsByLevel(std::initializer_list<Maker> makers) {
+    /// Of `make.operator()<level>()`, which is made of the level's instructions: it is not called where the machine
+    /// lacks them.
+    template <class Make>
+    explicit LoopsByLevel(const Make& make) {
         for (const SimdLevel level : available_simd_levels()) {
-            for (const Maker& maker : makers) {
-                if (maker.level == level) {
-                    loops_.emplace(level, maker.make());
-                }
-            }
+            loops_.emplace(level, made_at(level, make));
         }
     }
 
@@ -52,6 +45,22 @@ class LoopsByLevel {
     }
 
   private:
+    template <class Make>
+    static Loops made_at(SimdLevel level, const Make& make) {
+        switch (level) {
+#ifdef LENSPROOF_X86_KERNELS
+            case SimdLevel::avx512:
+                return make.template operator()<SimdLevel::avx512>();
+            case SimdLevel::avx2:
+                return make.template operator()<SimdLevel::avx2>();
+#endif
+            case SimdLevel::baseline:
+                return make.template operator()<SimdLevel::baseline>();
+            default:
+                return make.template operator()<SimdLevel::scalar>();
+        }
+    }
+
     std::map<SimdLevel, Loops> loops_;
 };
 

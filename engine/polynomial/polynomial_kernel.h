@@ -1,7 +1,8 @@
 // engine/polynomial/polynomial_kernel.h — polynomials of many rays in step, for compilers to vectorise.
 //
-// Only the files polynomial_kernel_*.cpp include this. Each is compiled for its own instructions, so what it defines
-// must not be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
+// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it
+// defines must not be shared with code for other machines: everything here is a template over the packs' Abi, and
+// inlined.
 #pragma once
 #include <cstddef>
 
@@ -146,9 +147,12 @@ template <class Abi>
     }
 }
 
-template <class Abi>
-PolynomialKernels polynomial_kernels_of() {
+template <SimdLevel level>
+PolynomialKernels polynomial_kernels_at() {
+    using Abi = AbiOf<level, double>;
     return {find_exits<Abi>};
 }
+
+template PolynomialKernels polynomial_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::polynomial

@@ -43,9 +43,8 @@ struct PolynomialKernels {
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 const PolynomialKernels& polynomial_kernels(std::optional<SimdLevel> level = {});
 
-PolynomialKernels scalar_polynomial_kernels();
-PolynomialKernels baseline_polynomial_kernels();
-PolynomialKernels avx2_polynomial_kernels();    // x86-64 alone
-PolynomialKernels avx512_polynomial_kernels();  // x86-64 alone
+/// Compiled for each level by itself (engine/CMakeLists.txt).
+template <SimdLevel level>
+PolynomialKernels polynomial_kernels_at();
 
 }  // namespace lensproof::polynomial

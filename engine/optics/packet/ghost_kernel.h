@@ -1,7 +1,8 @@
 // engine/optics/packet/ghost_kernel.h — the loop of ghost_lanes.h, compiled once for each width of packets.
 //
-// Only the files ghost_kernel_*.cpp include this, as trace_kernel.h is by its own.
+// Only a file for each level includes this, as it does trace_kernel.h.
 #pragma once
+#include <algorithm>
 #include <tuple>
 
 #include "engine/base/pack.h"
@@ -291,8 +292,13 @@ template <class Abi>
     }
 }
 
-/// So many doubles, in one register of the file's instructions.
-template <int lanes>
-using GhostAbi = std::experimental::simd_abi::deduce_t<double, lanes>;
+template <SimdLevel level>
+GhostKernels ghost_kernels_at() {
+    using Abi = AbiOf<level, double>;
+    constexpr int kLanes = std::min(Pack<double, Abi>::kLanes, int{kGhostLanes});
+    return {trace_lanes<std::experimental::simd_abi::deduce_t<double, kLanes>>, follow_rays<Abi>};
+}
+
+template GhostKernels ghost_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::optics

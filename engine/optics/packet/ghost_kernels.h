@@ -26,10 +26,8 @@ struct GhostKernels {
     void (*follow)(const KernelLens<double>& lens, const GhostWay& way, FollowedRays& rays) = nullptr;
 };
 
-/// Per level.
-GhostKernels scalar_ghost_kernels();
-GhostKernels baseline_ghost_kernels();
-GhostKernels avx2_ghost_kernels();    // x86-64 alone
-GhostKernels avx512_ghost_kernels();  // x86-64 alone
+/// Compiled for each level by itself (engine/CMakeLists.txt).
+template <SimdLevel level>
+GhostKernels ghost_kernels_at();
 
 }  // namespace lensproof::optics

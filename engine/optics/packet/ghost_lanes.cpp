@@ -7,14 +7,7 @@ namespace lensproof::optics {
 namespace {
 
 const LoopsByLevel<GhostKernels>& ghost_kernels() {
-    static const LoopsByLevel<GhostKernels> found{
-        {SimdLevel::scalar, scalar_ghost_kernels},
-        {SimdLevel::baseline, baseline_ghost_kernels},
-#ifdef LENSPROOF_X86_KERNELS
-        {SimdLevel::avx2, avx2_ghost_kernels},
-        {SimdLevel::avx512, avx512_ghost_kernels},
-#endif
-    };
+    static const LoopsByLevel<GhostKernels> found([]<SimdLevel level>() { return ghost_kernels_at<level>(); });
     return found;
 }
 

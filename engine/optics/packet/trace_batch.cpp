@@ -9,14 +9,7 @@ namespace lensproof::optics {
 namespace {
 
 const LoopsByLevel<LevelKernels>& kernels() {
-    static const LoopsByLevel<LevelKernels> found{
-        {SimdLevel::scalar, scalar_kernels},
-        {SimdLevel::baseline, baseline_kernels},
-#ifdef LENSPROOF_X86_KERNELS
-        {SimdLevel::avx2, avx2_kernels},
-        {SimdLevel::avx512, avx512_kernels},
-#endif
-    };
+    static const LoopsByLevel<LevelKernels> found([]<SimdLevel level>() { return trace_kernels_at<level>(); });
     return found;
 }
 

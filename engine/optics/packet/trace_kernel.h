@@ -1,6 +1,6 @@
 // engine/optics/packet/trace_kernel.h — the packet tracer's inner loop, compiled once for each width of packets.
 //
-// Only the files trace_kernel_*.cpp include this. Each is compiled for its own instructions, so what it defines must
+// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it defines must
 // not be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
 #pragma once
 #include <array>
@@ -493,5 +493,13 @@ template <class Scalar, class Abi>
 TraceKernels<Scalar> kernels_of() {
     return {{loops_by_carry<Scalar, Abi, Direction::forward>(), loops_by_carry<Scalar, Abi, Direction::reverse>()}};
 }
+
+template <SimdLevel level>
+LevelKernels trace_kernels_at() {
+    return {.in_float = kernels_of<float, AbiOf<level, float>>(),
+            .in_double = kernels_of<double, AbiOf<level, double>>()};
+}
+
+template LevelKernels trace_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::optics

@@ -42,14 +42,13 @@ using TraceKernel = void (*)(const KernelLens<T>& lens, const RayColumns<T>& ray
 template <class T>
 using TraceKernels = std::array<std::array<TraceKernel<T>, 3>, 2>;
 
-/// Per level, for float and double.
+/// Of one level.
 struct LevelKernels {
     TraceKernels<float> in_float;
     TraceKernels<double> in_double;
 };
-LevelKernels scalar_kernels();
-LevelKernels baseline_kernels();
-LevelKernels avx2_kernels();    // x86-64 alone
-LevelKernels avx512_kernels();  // x86-64 alone
+/// Compiled for each level by itself (engine/CMakeLists.txt).
+template <SimdLevel level>
+LevelKernels trace_kernels_at();
 
 }  // namespace lensproof::optics

@@ -1,8 +1,9 @@
 // engine/render/camera/packet/path_kernel.h — the loops that camera paths start with and are weighed in, for compilers
 // to vectorise.
 //
-// Only the files path_kernel_*.cpp include this. Each is compiled for its own instructions, so what it defines must not
-// be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
+// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it
+// defines must not be shared with code for other machines: everything here is a template over the packs' Abi, and
+// inlined.
 #pragma once
 #include <algorithm>
 #include <numeric>
@@ -168,8 +169,9 @@ template <class Abi>
     }
 }
 
-template <class Abi>
-PathKernels path_kernels_of() {
+template <SimdLevel level>
+PathKernels path_kernels_at() {
+    using Abi = AbiOf<level, double>;
     return {.draw_samples = draw_samples<Abi>,
             .draw_pupil_points = draw_pupil_points<Abi>,
             .aim_rays = aim_rays<Abi>,
@@ -178,5 +180,7 @@ PathKernels path_kernels_of() {
             .weigh_pupil_points = weigh_pupil_points<Abi>,
             .share_rays = share_rays<Abi>};
 }
+
+template PathKernels path_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::render

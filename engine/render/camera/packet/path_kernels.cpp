@@ -3,14 +3,7 @@
 namespace lensproof::render {
 
 const PathKernels& path_kernels(std::optional<SimdLevel> level) {
-    static const LoopsByLevel<PathKernels> found{
-        {SimdLevel::scalar, scalar_path_kernels},
-        {SimdLevel::baseline, baseline_path_kernels},
-#ifdef LENSPROOF_X86_KERNELS
-        {SimdLevel::avx2, avx2_path_kernels},
-        {SimdLevel::avx512, avx512_path_kernels},
-#endif
-    };
+    static const LoopsByLevel<PathKernels> found([]<SimdLevel level>() { return path_kernels_at<level>(); });
     return found.at(level);
 }
 

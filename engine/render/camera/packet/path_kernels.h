@@ -38,9 +38,8 @@ struct PathKernels {
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 const PathKernels& path_kernels(std::optional<SimdLevel> level);
 
-PathKernels scalar_path_kernels();
-PathKernels baseline_path_kernels();
-PathKernels avx2_path_kernels();    // x86-64 alone
-PathKernels avx512_path_kernels();  // x86-64 alone
+/// Compiled for each level by itself (engine/CMakeLists.txt).
+template <SimdLevel level>
+PathKernels path_kernels_at();
 
 }  // namespace lensproof::render

@@ -1,10 +1,10 @@
 // engine/render/sampling/packet/number_kernel.h — the numbers of many light paths, for compilers to vectorise.
 //
-// Only the files number_kernel_*.cpp include this. Each is compiled for its own instructions, so what it defines must
-// not be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
+// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it
+// defines must not be shared with code for other machines: everything here is a template over the packs' Abi, and
+// inlined.
 #pragma once
-#include <experimental/simd>
-
+#include "engine/base/pack.h"
 #include "engine/render/sampling/packet/number_kernels.h"
 
 namespace lensproof::render {
@@ -46,9 +46,12 @@ template <class Abi>
     }
 }
 
-template <class Abi>
-NumberKernels number_kernels_of() {
+template <SimdLevel level>
+NumberKernels number_kernels_at() {
+    using Abi = AbiOf<level, std::uint32_t>;
     return {.draw = draw_numbers<Abi>};
 }
+
+template NumberKernels number_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::render

@@ -17,14 +17,7 @@ std::array<double, PathSampler::kNumbers> NumberColumns::numbers(int i) const {
 }
 
 const NumberKernels& number_kernels(std::optional<SimdLevel> level) {
-    static const LoopsByLevel<NumberKernels> found{
-        {SimdLevel::scalar, scalar_number_kernels},
-        {SimdLevel::baseline, baseline_number_kernels},
-#ifdef LENSPROOF_X86_KERNELS
-        {SimdLevel::avx2, avx2_number_kernels},
-        {SimdLevel::avx512, avx512_number_kernels},
-#endif
-    };
+    static const LoopsByLevel<NumberKernels> found([]<SimdLevel level>() { return number_kernels_at<level>(); });
     return found.at(level);
 }
 

@@ -35,9 +35,8 @@ struct NumberKernels {
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 const NumberKernels& number_kernels(std::optional<SimdLevel> level = {});
 
-NumberKernels scalar_number_kernels();
-NumberKernels baseline_number_kernels();
-NumberKernels avx2_number_kernels();    // x86-64 alone
-NumberKernels avx512_number_kernels();  // x86-64 alone
+/// Compiled for each level by itself (engine/CMakeLists.txt).
+template <SimdLevel level>
+NumberKernels number_kernels_at();
 
 }  // namespace lensproof::render

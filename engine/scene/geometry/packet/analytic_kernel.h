@@ -1,7 +1,8 @@
 // engine/scene/geometry/packet/analytic_kernel.h — many rays against spheres and quads, for compilers to vectorise.
 //
-// Only the files analytic_kernel_*.cpp include this. Each is compiled for its own instructions, so what it defines must
-// not be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
+// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it
+// defines must not be shared with code for other machines: everything here is a template over the packs' Abi, and
+// inlined.
 #pragma once
 #include "engine/base/pack.h"
 #include "engine/scene/geometry/packet/analytic_kernels.h"
@@ -39,9 +40,12 @@ template <class Abi>
     }
 }
 
-template <class Abi>
-AnalyticKernels analytic_kernels_of() {
+template <SimdLevel level>
+AnalyticKernels analytic_kernels_at() {
+    using Abi = AbiOf<level, double>;
     return {.meet_nearest = meet_nearest<Abi>};
 }
+
+template AnalyticKernels analytic_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::scene

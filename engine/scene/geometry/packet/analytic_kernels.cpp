@@ -15,14 +15,7 @@ void RayColumns::set(std::size_t i, const Stretch<double>& ray) {
 }
 
 const AnalyticKernels& analytic_kernels(std::optional<SimdLevel> level) {
-    static const LoopsByLevel<AnalyticKernels> found{
-        {SimdLevel::scalar, scalar_analytic_kernels},
-        {SimdLevel::baseline, baseline_analytic_kernels},
-#ifdef LENSPROOF_X86_KERNELS
-        {SimdLevel::avx2, avx2_analytic_kernels},
-        {SimdLevel::avx512, avx512_analytic_kernels},
-#endif
-    };
+    static const LoopsByLevel<AnalyticKernels> found([]<SimdLevel level>() { return analytic_kernels_at<level>(); });
     return found.at(level);
 }
 

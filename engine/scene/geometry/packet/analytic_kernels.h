@@ -37,9 +37,8 @@ struct AnalyticKernels {
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 const AnalyticKernels& analytic_kernels(std::optional<SimdLevel> level = {});
 
-AnalyticKernels scalar_analytic_kernels();
-AnalyticKernels baseline_analytic_kernels();
-AnalyticKernels avx2_analytic_kernels();    // x86-64 alone
-AnalyticKernels avx512_analytic_kernels();  // x86-64 alone
+/// Compiled for each level by itself (engine/CMakeLists.txt).
+template <SimdLevel level>
+AnalyticKernels analytic_kernels_at();
 
 }  // namespace lensproof::scene

@@ -1,9 +1,0 @@
-#include "engine/render/camera/packet/path_kernel.h"
-
-namespace lensproof::render {
-
-PathKernels baseline_path_kernels() {
-    return path_kernels_of<std::experimental::simd_abi::native<double>>();
-}
-
-}  // namespace lensproof::render
