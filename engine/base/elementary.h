@@ -1,13 +1,15 @@
 // engine/base/elementary.h — exponentials and sines of the same bits on every machine, a GPU too.
 //
 // The libraries' own differ in their last bits from machine to machine. These are sums of products alone, which IEEE
-// 754 rounds alike everywhere (nothing is contracted: CMakeLists.txt).
+// 754 rounds alike everywhere (nothing is contracted: CMakeLists.txt), in the lanes of a packet too.
 #pragma once
 #include <bit>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <type_traits>
 
+#include "engine/base/select.h"
 #include "engine/base/vec.h"
 
 namespace lensproof {
@@ -19,14 +21,23 @@ constexpr double factorial(int i) {
 }
 
 /// 1/i! + p/(i + step)! + p²/(i + 2 step)! + … to the term of `last`, by Horner's rule.
-template <int i, int last, int step, std::floating_point T>
+template <int i, int last, int step, class T>
 constexpr T factorial_series(const T& p) {
-    constexpr T kFirst = T(1.0 / factorial(i));
+    using Number = typename LaneOf<T>::Number;
+    constexpr auto kFirst = static_cast<Number>(1.0 / factorial(i));
     if constexpr (i < last) {
-        return kFirst + p * factorial_series<i + step, last, step>(p);
+        return T(kFirst) + p * factorial_series<i + step, last, step>(p);
     } else {
-        return kFirst;
+        return T(kFirst);
     }
+}
+
+/// The nearest whole number, of |x| below 2^22 or, in double, 2^51.
+template <class T>
+constexpr T nearest_whole(const T& x) {
+    using Number = typename LaneOf<T>::Number;
+    const T no_digits_below_one(std::is_same_v<Number, double> ? Number(0x1.8p52) : Number(0x1.8p23));
+    return (x + no_digits_below_one) - no_digits_below_one;
 }
 
 }  // namespace elementary_detail
@@ -57,6 +68,47 @@ constexpr Vec2d cos_sin_within_eighth(double x) {
     const double minus_x2 = -(x * x);
     return {elementary_detail::factorial_series<0, 18, 2>(minus_x2),
             x * elementary_detail::factorial_series<1, 19, 2>(minus_x2)};
+}
+
+/// The largest |x| that `cos_sin_within` takes.
+template <std::floating_point Number>
+inline constexpr auto kMostTurned = std::is_same_v<Number, double> ? Number(1e6) : Number(6000);
+
+/// (cos x, sin x) of |x| ≤ kMostTurned, each within an ulp of 1: of a number or of a packet's lanes.
+template <class T>
+constexpr Vec2<T> cos_sin_within(const T& x) {
+    using Number = typename LaneOf<T>::Number;
+    constexpr bool is_double = std::is_same_v<Number, double>;
+    // Quarter turns in parts, of which the first ones have so few digits that multiples of them are exact.
+    constexpr auto kFirst = Number(is_double ? 0x1.921fb544p+0 : 0x1.92p+0);
+    constexpr auto kSecond = Number(is_double ? 0x1.0b4611a6p-34 : 0x1.fb6p-12);
+    constexpr auto kThird = Number(is_double ? 0x1.3198a2e037073p-69 : -0x1.777a5cp-25);
+    const T quarters = elementary_detail::nearest_whole(x * T(Number(0.63661977236758134308)));
+    const T rest = ((x - quarters * T(kFirst)) - quarters * T(kSecond)) - quarters * T(kThird);
+    const T minus_square = -(rest * rest);
+    const T cosine = elementary_detail::factorial_series < 0, is_double ? 18 : 10, 2 > (minus_square);
+    const T sine = rest * elementary_detail::factorial_series < 1, is_double ? 19 : 11, 2 > (minus_square);
+    // −2 to 2 of them are left of whole turns.
+    const T left = quarters - T(Number(4)) * elementary_detail::nearest_whole(quarters * T(Number(0.25)));
+    const T half(Number(0.5));
+    const auto is_odd = left * left > half && left * left < T(Number(2));
+    const T along = select(is_odd, sine, cosine);
+    const T across = select(is_odd, cosine, sine);
+    return {select(left > half || left < -(T(Number(1)) + half), -along, along),
+            select(left < -half || left > T(Number(1)) + half, -across, across)};
+}
+
+/// (cos x, sin x) of any x and any number type: beyond kMostTurned, and of other types, as their library has them.
+template <class T>
+constexpr Vec2<T> cos_sin(const T& x) {
+    using std::cos;
+    using std::sin;
+    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, float>) {
+        if (x <= kMostTurned<T> && x >= -kMostTurned<T>) {
+            return cos_sin_within(x);
+        }
+    }
+    return {cos(x), sin(x)};
 }
 
 }  // namespace lensproof

@@ -49,6 +49,7 @@ class Pack {
   public:
     using Lanes = std::experimental::simd<Scalar, Abi>;
     using Mask = PackMask<Scalar, Abi>;
+    using Number = Scalar;
     static constexpr int kLanes = static_cast<int>(Lanes::size());
 
     Pack() = default;

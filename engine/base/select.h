@@ -20,6 +20,16 @@ constexpr T select(bool mask, const T& a, const T& b) {
     return mask ? a : b;
 }
 
+/// The type of a packet's lanes; of a single number its own.
+template <class T>
+struct LaneOf {
+    using Number = T;
+};
+template <Packet T>
+struct LaneOf<T> {
+    using Number = typename T::Number;
+};
+
 template <Packet T>
 constexpr Vec3<T> select(const MaskOf<T>& mask, const Vec3<T>& a, const Vec3<T>& b) {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};

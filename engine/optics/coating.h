@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/complex.h"
+#include "engine/base/elementary.h"
 
 namespace lensproof::optics {
 
@@ -69,10 +70,8 @@ struct LayerWave {
 
 template <class T>
 constexpr LayerWave<T> layer_wave(const Complex<T>& q_squared, const T& phase_by_q) {
-    using std::cos;
     using std::exp;
     using std::expm1;
-    using std::sin;
     using std::sqrt;
     const T real = q_squared.real;
     if (q_squared.imag == T(0)) {
@@ -82,7 +81,8 @@ constexpr LayerWave<T> layer_wave(const Complex<T>& q_squared, const T& phase_by
             return {{T(1)}, {phase_by_q}, T(1)};
         }
         if (real > T(0)) {
-            return {{cos(phase)}, {sin(phase) / q}, T(1)};
+            const auto [cosine, sine] = cos_sin(phase);
+            return {{cosine}, {sine / q}, T(1)};
         }
         const T fall = expm1(T(-2) * phase);  // cosh φ = (1 + e^{−2φ}) e^φ / 2, and sinh φ likewise
         return {{T(1) + fall / T(2)}, {-fall / (T(2) * q)}, exp(-phase)};
@@ -93,8 +93,9 @@ constexpr LayerWave<T> layer_wave(const Complex<T>& q_squared, const T& phase_by
     const T fall = expm1(T(-2) * fading);
     const T cosh = T(1) + fall / T(2);
     const T sinh = -fall / T(2);
-    const Complex<T> sine{sin(turn) * cosh, cos(turn) * sinh};
-    return {{cos(turn) * cosh, -sin(turn) * sinh}, sine / q, exp(-fading)};
+    const auto [cos_turn, sin_turn] = cos_sin(turn);
+    const Complex<T> sine{sin_turn * cosh, cos_turn * sinh};
+    return {{cos_turn * cosh, -sin_turn * sinh}, sine / q, exp(-fading)};
 }
 
 /// One polarisation's tangential fields on the near side of the layers, up to the factor `scale`, and the admittances
@@ -125,12 +126,50 @@ struct PolarisedFields {
     StackFields<T> p;
 };
 
+/// Behind all layers, between media of index `near` and `far` and longitudinal wavenumbers `q_near` and `q_far`.
+template <class T>
+constexpr PolarisedFields<T> fields_behind(const T& near, const T& far, const T& q_near, const Complex<T>& q_far) {
+    PolarisedFields<T> fields{
+        .s = {.first = {T(1)}, .second = q_far, .scale = T(1), .eta_near = q_near, .eta_far = q_far},
+        .p = {.first = {T(1)}, .second = {}, .scale = T(1), .eta_near = q_near / (near * near), .eta_far = {}}};
+    fields.p.eta_far = q_far / (far * far);
+    fields.p.second = fields.p.eta_far;
+    return fields;
+}
+
+/// From a layer's far side to its near one, but for its decay. `Number`: T where the layer's numbers are real, as
+/// nearly all are; then half of the products with complex ones would be with 0.
+///
+/// A layer's matrix is [cos φ, −i sin φ / η; −i η sin φ, cos φ] on (first, second), applied to (1, η_far) from the far
+/// side on (Abelès 1950; Macleod, Thin-Film Optical Filters, 4th ed., §2.4, with κ and i of the other sign).
+template <class T, class Number>
+constexpr void cross_layer(PolarisedFields<T>& fields, const Number& cosine, const Number& sine_by_q,
+                           const Number& q_squared, const Number& n_squared) {
+    const auto cross = [&](StackFields<T>& of, const Number& by_eta, const Number& with_eta) {
+        const Complex<T> to_first = by_eta * of.second;
+        const Complex<T> to_second = with_eta * of.first;
+        of.first = cosine * of.first + Complex<T>{to_first.imag, -to_first.real};
+        of.second = cosine * of.second + Complex<T>{to_second.imag, -to_second.real};
+    };
+    const Number sine_times_q = sine_by_q * q_squared;
+    cross(fields.s, sine_by_q, sine_times_q);
+    cross(fields.p, sine_by_q * n_squared, sine_times_q / n_squared);
+}
+
+/// Beyond this size what fields have grown by is kept apart.
+inline constexpr double kLargeFields = 1e10;
+
+template <class T>
+constexpr T size_of(const StackFields<T>& of) {
+    using std::abs;
+    return abs(of.first.real) + abs(of.first.imag) + abs(of.second.real) + abs(of.second.imag);
+}
+
 /// The fields on the side that light comes from, at an angle of cosine `cos_incidence` there (above 0). `n1` is the
 /// medium on the scene's side, `n2` that on the sensor's.
 ///
-/// A layer's matrix is [cos φ, −i sin φ / η; −i η sin φ, cos φ] on (first, second), applied to (1, η_far) from the far
-/// side on (Abelès 1950; Macleod, Thin-Film Optical Filters, 4th ed., §2.4, with κ and i of the other sign). Going
-/// back, the wave that fades in the layers grows and the others' rounding errors fade; what it grows by is kept apart.
+/// Going back, the wave that fades in the layers grows and the others' rounding errors fade; what it grows by is kept
+/// apart.
 template <class T, class Layers = TraceLayers<T>>
 constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
                                           const T& cos_incidence, bool from_scene_side) {
@@ -143,11 +182,7 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
     const T q_near = near * cos_incidence;
     const T far_squared = (far - near) * (far + near) + q_near * q_near;
     const Complex q_far = far_squared < T(0) ? Complex{T(0), sqrt(-far_squared)} : Complex{sqrt(far_squared)};
-    PolarisedFields<T> fields{
-        .s = {.first = {T(1)}, .second = q_far, .scale = T(1), .eta_near = q_near, .eta_far = q_far},
-        .p = {.first = {T(1)}, .second = {}, .scale = T(1), .eta_near = q_near / (near * near), .eta_far = {}}};
-    fields.p.eta_far = q_far / (far * far);
-    fields.p.second = fields.p.eta_far;
+    PolarisedFields<T> fields = fields_behind(near, far, q_near, q_far);
     const T two_pi = T(2) * acos(T(-1));  // in every number type
     const std::size_t count = coating.layers.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -157,24 +192,58 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
         const Complex n_squared{(n - kappa) * (n + kappa), T(2) * n * kappa};
         const Complex q_squared{(n - near) * (n + near) - kappa * kappa + q_near * q_near, n_squared.imag};
         const LayerWave<T> wave = layer_wave(q_squared, two_pi * layer.thickness);
-        const Complex sine_times_q = wave.sine_by_q * q_squared;
-        const auto cross = [&](StackFields<T>& of, const Complex& by_eta, const Complex& with_eta) {
-            const Complex to_first = by_eta * of.second;
-            const Complex to_second = with_eta * of.first;
-            of.first = wave.cosine * of.first + Complex{to_first.imag, -to_first.real};
-            of.second = wave.cosine * of.second + Complex{to_second.imag, -to_second.real};
-            of.scale = of.scale * wave.decay;
-            const T size = abs(of.first.real) + abs(of.first.imag) + abs(of.second.real) + abs(of.second.imag);
-            if (const T large(1e10); size > large) {  // a mirror's fields grow with each of its layers
-                of.first = of.first / large;
-                of.second = of.second / large;
-                of.scale = of.scale / large;
+        if (q_squared.imag == T(0)) {
+            cross_layer(fields, wave.cosine.real, wave.sine_by_q.real, q_squared.real, n_squared.real);
+        } else {
+            cross_layer(fields, wave.cosine, wave.sine_by_q, q_squared, n_squared);
+        }
+        for (StackFields<T>* of : {&fields.s, &fields.p}) {
+            of->scale = of->scale * wave.decay;
+            if (const T large(kLargeFields); size_of(*of) > large) {  // a mirror's fields grow with each of its layers
+                of->first = of->first / large;
+                of->second = of->second / large;
+                of->scale = of->scale / large;
             }
-        };
-        cross(fields.s, wave.sine_by_q, sine_times_q);
-        cross(fields.p, wave.sine_by_q * n_squared, sine_times_q / n_squared);
+        }
     }
     return fields;
+}
+
+/// The same powers as `coating_powers` has, to the bit, of a packet's lanes in which no wave fades and none is
+/// reflected totally: `holds` in these, in the others nothing is said.
+template <Packet T>
+struct ClearPowers {
+    PolarisedPowers<T> powers;
+    MaskOf<T> holds;
+};
+
+/// Of layers that absorb nothing: `layer_at(i)` is the i-th from the far side.
+template <Packet T, class LayerAt>
+constexpr ClearPowers<T> clear_coating_powers(int count, const LayerAt& layer_at, const T& n_near, const T& n_far,
+                                              const T& cos_incidence) {
+    using Number = typename LaneOf<T>::Number;
+    const T zero(Number(0));
+    const T near = abs(n_near);
+    const T far = abs(n_far);
+    const T q_near = near * cos_incidence;
+    const T far_squared = (far - near) * (far + near) + q_near * q_near;
+    MaskOf<T> holds = far_squared >= zero;
+    PolarisedFields<T> fields = fields_behind(near, far, q_near, Complex<T>{sqrt(far_squared), zero});
+    const T two_pi(Number(2) * std::acos(Number(-1)));
+    for (int i = 0; i < count; ++i) {
+        const TraceLayer<T> layer = layer_at(i);
+        const T& n = layer.index;
+        const T q_squared = (n - near) * (n + near) + q_near * q_near;
+        const T q = sqrt(q_squared);
+        const T phase = two_pi * layer.thickness * q;
+        holds = holds && q_squared > zero && phase > zero && phase <= T(kMostTurned<Number>);
+        const auto [cosine, sine] = cos_sin_within(phase);
+        cross_layer(fields, cosine, sine / q, q_squared, n * n);
+        for (const StackFields<T>* of : {&fields.s, &fields.p}) {
+            holds = holds && size_of(*of) <= T(Number(kLargeFields));
+        }
+    }
+    return {.powers = {fields.s.powers(), fields.p.powers()}, .holds = holds};
 }
 
 /// Whether light from that side gets through at all, or is reflected totally by the medium behind the coating.

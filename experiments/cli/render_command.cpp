@@ -129,9 +129,15 @@ studies::Plan take_plan(const RenderJobOptions& options, RenderWishes& wishes, r
     if (!wishes.passes.empty()) {
         throw InputError("--model auto decides which passes are rendered, expected no --passes beside it");
     }
+    if (options.samples > 0) {
+        setup.samples_per_pixel = static_cast<int>(options.samples);
+    }
     const studies::Plan pilot = plan_of(setup, options.scene, wishes.tolerance, options.common);
-    studies::Plan plan = studies::spot_checked(
-        pilot, setup, {.seed = options.common.seed, .threads = options.common.threads, .cache = Cache::standard()});
+    studies::SpotCheckSettings check = studies::SpotCheckSettings::for_render(setup);
+    check.seed = options.common.seed;
+    check.threads = options.common.threads;
+    check.cache = Cache::standard();
+    studies::Plan plan = studies::spot_checked(pilot, setup, check);
     setup = studies::planned_setup(std::move(setup), plan.render);
     if (!plan.render.passes.empty()) {
         wishes.passes = {"straight"};

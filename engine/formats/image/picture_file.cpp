@@ -137,10 +137,11 @@ OpenPicture open_picture_here(const fs::path& file, const OIIO::ImageSpec& hints
     if (*form == PictureForm::jpeg) {
         check_jpeg(file);
     }
-    if ((*form == PictureForm::exr && !exr_header_fits(file)) || (*form == PictureForm::png && !png_chunks_fit(file))) {
-        throw InputError(
-            fmt::format("{}: not a picture that can be read: it states more than there is of it, as if it were cut off",
-                        file.string()));
+    const std::string fault = *form == PictureForm::exr   ? exr_fault(file)
+                              : *form == PictureForm::png ? png_fault(file)
+                                                          : "";
+    if (!fault.empty()) {
+        throw InputError(fmt::format("{}: not a picture that can be read: {}", file.string(), fault));
     }
     OpenPicture picture{.form = *form, .input = OIIO::ImageInput::create(reader_of(*form))};
     OIIO::ImageSpec spec;

@@ -1,5 +1,7 @@
 #include "engine/formats/image/stated_sizes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -16,8 +18,10 @@ namespace lensproof::formats {
 namespace {
 
 constexpr std::uint32_t kHasParts = 0x1000;  // of the version field
-constexpr std::streamoff kBytesOfChannel = 16;
-constexpr std::size_t kLongestName = 255;                                     // of attributes and of their types
+constexpr const char* kCutOff = "it states more than there is of it, as if it were cut off";
+constexpr std::streamoff kBytesOfChannel = 16;  // the first four: of which type its pixels are
+constexpr std::uint32_t kPixelTypes = 3;        // whole numbers, halves, floats
+constexpr std::size_t kLongestName = 255;       // of attributes and of their types
 constexpr std::array kLinesOfChunk = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};  // by compression
 
 /// Types of attributes whose values always take these bytes: OpenEXR's library reads as many, whatever size is stated,
@@ -53,23 +57,26 @@ class ExrHeaders {
     explicit ExrHeaders(const std::filesystem::path& file)
         : stream_(file, std::ios::binary), size_(static_cast<double>(std::filesystem::file_size(file))) {}
 
-    bool fit() {
+    std::string fault() {
         const auto magic = number<std::uint32_t>();
         const auto version = number<std::uint32_t>();
         if (!magic || !version) {
-            return false;
+            return kCutOff;
         }
         double chunks = 0.0;
         for (std::optional<double> part = chunks_of_part(); part != 0.0; part = chunks_of_part()) {
             chunks += part.value_or(size_);
+            if (unknown_type_) {
+                return fmt::format("a channel has pixels of type {}, expected 0, 1 or 2", *unknown_type_);
+            }
             if (8.0 * chunks > size_) {
-                return false;
+                return kCutOff;
             }
             if ((*version & kHasParts) == 0) {
                 break;
             }
         }
-        return true;
+        return {};
     }
 
   private:
@@ -99,7 +106,11 @@ class ExrHeaders {
         if (type == "chlist") {  // names and 16 bytes each, up to a name of nothing
             for (std::string channel = name(); !channel.empty() && length < size; channel = name()) {
                 length += static_cast<double>(channel.size()) + 1 + kBytesOfChannel;
-                stream_.seekg(kBytesOfChannel, std::ios::cur);
+                const auto pixels = number<std::uint32_t>();
+                if (pixels && *pixels >= kPixelTypes) {
+                    unknown_type_ = pixels;
+                }
+                stream_.seekg(kBytesOfChannel - std::streamoff{sizeof(std::uint32_t)}, std::ios::cur);
             }
             return length + 1;
         }
@@ -166,15 +177,16 @@ class ExrHeaders {
 
     std::ifstream stream_;
     double size_;
+    std::optional<std::uint32_t> unknown_type_;
 };
 
 }  // namespace
 
-bool exr_header_fits(const std::filesystem::path& file) {
-    return ExrHeaders(file).fit();
+std::string exr_fault(const std::filesystem::path& file) {
+    return ExrHeaders(file).fault();
 }
 
-bool png_chunks_fit(const std::filesystem::path& file) {
+std::string png_fault(const std::filesystem::path& file) {
     constexpr std::uintmax_t kSignature = 8;
     constexpr std::uintmax_t kAround = 12;  // length, type and checksum
     const std::uintmax_t size = std::filesystem::file_size(file);
@@ -187,13 +199,13 @@ bool png_chunks_fit(const std::filesystem::path& file) {
                                       (std::uintmax_t{head[2]} << 8U) + head[3];
         at += kAround + length;
         if (!stream || at > size) {
-            return false;
+            return kCutOff;
         }
         if (std::string_view(reinterpret_cast<const char*>(head.data()) + 4, 4) == "IEND") {
             break;
         }
     }
-    return true;
+    return {};
 }
 
 }  // namespace lensproof::formats

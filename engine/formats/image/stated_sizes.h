@@ -2,14 +2,16 @@
 // they look.
 #pragma once
 #include <filesystem>
+#include <string>
 
 namespace lensproof::formats {
 
-/// Whether each attribute ends within the file and is as long as its type says, and the file has room for the 8 bytes
-/// that stand in it for each chunk of each part (OpenEXR File Layout, "Offset Tables").
-bool exr_header_fits(const std::filesystem::path& file);
+/// What is wrong with an OpenEXR file's headers, else nothing: each attribute ends within the file and is as long as
+/// its type says, channels are of a type that there is (OpenImageIO 2.4 ends the program at another), and the file has
+/// room for the 8 bytes that stand in it for each chunk of each part (OpenEXR File Layout, "Offset Tables").
+std::string exr_fault(const std::filesystem::path& file);
 
-/// Whether each chunk of a PNG, up to the last (IEND), ends within the file.
-bool png_chunks_fit(const std::filesystem::path& file);
+/// The same of a PNG: each of its chunks, up to the last (IEND), ends within the file.
+std::string png_fault(const std::filesystem::path& file);
 
 }  // namespace lensproof::formats

@@ -7,6 +7,7 @@
 
 #include "engine/base/pack.h"
 #include "engine/optics/intersect.h"
+#include "engine/optics/packet/clear_layers.h"
 #include "engine/optics/packet/ghost_kernels.h"
 #include "engine/optics/refract.h"
 #include "engine/optics/surface_shape.h"
@@ -213,7 +214,7 @@ class GhostTracer {
             } else {
                 const Numbers reflected =
                     is_coated
-                        ? coated(lane_coated_reflectance, index, is_forward, cos_incidence)
+                        ? coated(&CoatedPowers<Numbers>::reflected, lane_coated_reflectance, index, is_forward, met.at)
                         : select(bent.transmitted,
                                  fresnel_reflectance(before, after, cos_incidence, bent.cos_refraction), Numbers(1.0));
                 at_surfaces_ = at_surfaces_ * (open * reflected);
@@ -221,7 +222,8 @@ class GhostTracer {
         } else {
             going_ = going_ && bent.transmitted;
             direction = bent.direction;
-            Numbers passing = is_coated ? coated(lane_coated_transmittance<double>, index, is_forward, cos_incidence)
+            Numbers passing = is_coated ? coated(&CoatedPowers<Numbers>::transmitted, lane_coated_transmittance<double>,
+                                                 index, is_forward, met.at)
                                         : fresnel_transmittance(before, after, cos_incidence, bent.cos_refraction);
             if (special != nullptr) {
                 passing = passing * open;
@@ -231,11 +233,23 @@ class GhostTracer {
         direction_ = special != nullptr ? special->from_own(direction) : direction;
     }
 
-    /// A coating's power, wavelength by wavelength.
-    template <class Power>
-    [[nodiscard]] Numbers coated(const Power& power, int index, bool is_forward, const Numbers& cos_incidence) const {
-        return Numbers::by_lane(going_, Numbers(0.0), [&](int lane) {
-            return power(*lens_.lens, wavelengths_[lane], index, is_forward, cos_incidence[lane]);
+    /// One of a coating's powers, of unpolarised light. `of_lane`: the same of a ray.
+    template <class OfLane>
+    [[nodiscard]] Numbers coated(Numbers CoatedPowers<Numbers>::*power, const OfLane& of_lane, int index,
+                                 bool is_forward, const Intersection<Numbers>& met) const {
+        Numbers found(0.0);
+        Mask lanes = going_;
+        if (const auto& of = lens_.indices[index]; of.clear_layer_count > 0) {
+            const auto look_up = [&](const double* table) { return by_wavelength(table); };
+            const ClearPowers<Numbers> clear =
+                clear_coating_powers(of.clear_layer_count, clear_layer_at(lens_, of, is_forward, look_up),
+                                     by_wavelength(is_forward ? of.before : of.after),
+                                     by_wavelength(is_forward ? of.after : of.before), met.cos_incidence);
+            found = select(lanes && clear.holds, clear.powers.unpolarised().*power, found);
+            lanes = lanes && !clear.holds;
+        }
+        return Numbers::by_lane(lanes, found, [&](int lane) {
+            return of_lane(*lens_.lens, wavelengths_[lane], index, is_forward, met.cos_incidence[lane]);
         });
     }
 

@@ -24,6 +24,25 @@ bool differ_in_indices_alone(const TraceLens<T>& a, const TraceLens<T>& b) {
     return true;
 }
 
+/// Of the surface's coating at each wavelength; none where it is not made of layers that all absorb nothing.
+template <class T>
+std::size_t clear_layers_of(const std::vector<TraceLens<T>>& at, std::size_t surface) {
+    const int special = at.front().surfaces[surface].special;
+    if (special < 0) {
+        return 0;
+    }
+    const auto coating_of = [&](const TraceLens<T>& lens) -> const auto& {
+        return lens.specials[static_cast<std::size_t>(special)].coating;
+    };
+    const std::size_t count = coating_of(at.front()).layers.size();
+    const bool are_clear = std::ranges::all_of(at, [&](const TraceLens<T>& lens) {
+        const auto& coating = coating_of(lens);
+        return !coating.is_mirror && !coating.reflectance && coating.layers.size() == count &&
+               std::ranges::all_of(coating.layers, [](const TraceLayer<T>& layer) { return layer.extinction == T(0); });
+    });
+    return are_clear ? count : 0;
+}
+
 enum Column { kBefore, kAfter, kForwardRatio, kReverseRatio, kColumns };
 
 }  // namespace
@@ -66,6 +85,30 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
                             .reverse_ratio = columns + kReverseRatio * count,
                             .attenuation_before = absorbing,
                             .attenuation_after = absorbs_ ? absorbing + count : nullptr});
+    }
+    add_coatings();
+}
+
+template <class T>
+void SpectralLens<T>::add_coatings() {
+    std::vector<std::size_t> begins;
+    for (std::size_t i = 0; i < indices_.size(); ++i) {
+        begins.push_back(clear_layers_.size());
+        const std::size_t count = clear_layers_of(at_, i);
+        indices_[i].clear_layer_count = static_cast<int>(count);
+        for (std::size_t layer = 0; layer < count; ++layer) {
+            const auto add = [&](T TraceLayer<T>::*number) {
+                for (const TraceLens<T>& lens : at_) {
+                    const auto special = static_cast<std::size_t>(lens.surfaces[i].special);
+                    clear_layers_.push_back(lens.specials[special].coating.layers[layer].*number);
+                }
+            };
+            add(&TraceLayer<T>::index);
+            add(&TraceLayer<T>::thickness);
+        }
+    }
+    for (std::size_t i = 0; i < indices_.size(); ++i) {
+        indices_[i].clear_layers = clear_layers_.data() + begins[i];
     }
 }
 

@@ -35,14 +35,20 @@ class SpectralLens {
         const T* reverse_ratio;
         const T* attenuation_before;
         const T* attenuation_after;
+        const T* clear_layers =
+            nullptr;                // of its coating from the scene's side, where none absorbs: of each the index,
+        int clear_layer_count = 0;  // then the thickness; 0: not such a coating
     };
     [[nodiscard]] const std::vector<Indices>& indices() const { return indices_; }
     /// Whether a medium absorbs at one of the wavelengths.
     [[nodiscard]] bool absorbs() const { return absorbs_; }
 
   private:
+    void add_coatings();
+
     std::vector<TraceLens<T>> at_;
-    std::vector<T> table_;  // [surface][which][wavelength]
+    std::vector<T> table_;         // [surface][which][wavelength]
+    std::vector<T> clear_layers_;  // [coating][layer][which][wavelength]
     std::vector<Indices> indices_;
     bool absorbs_ = false;
 };

@@ -32,6 +32,7 @@ KernelLens<T> kernel_lens(const SpectralLens<T>& lens) {
             .specials = lens.at().front().specials.data(),
             .lens = &lens,
             .count = static_cast<int>(surfaces.size()),
+            .wavelengths = lens.wavelengths(),
             .is_monochromatic = lens.wavelengths() == 1,
             .absorbs = lens.absorbs()};
 }

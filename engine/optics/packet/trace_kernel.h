@@ -1,13 +1,15 @@
 // engine/optics/packet/trace_kernel.h — the packet tracer's inner loop, compiled once for each width of packets.
 //
-// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it defines must
-// not be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
+// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it
+// defines must not be shared with code for other machines: everything here is a template over the packs' Abi, and
+// inlined.
 #pragma once
 #include <array>
 #include <tuple>
 
 #include "engine/base/pack.h"
 #include "engine/optics/intersect.h"
+#include "engine/optics/packet/clear_layers.h"
 #include "engine/optics/packet/trace_kernels.h"
 #include "engine/optics/refract.h"
 #include "engine/optics/surface_shape.h"
@@ -352,7 +354,7 @@ class BlockTracer {
             if constexpr (carry != Carry::geometry) {
                 Numbers passing(Scalar(1));
                 if (!special.coating.is_bare()) {
-                    passing = coated_transmittances(here, packet, met, fate.on);
+                    passing = coated_transmittances<per_lane>(here, packet, media, met.cos_incidence, fate.on);
                 } else if (special.thin.kind == ThinKind::none) {
                     passing = fresnel(media, met, bent);
                 }
@@ -404,11 +406,28 @@ class BlockTracer {
         });
     }
 
-    Numbers coated_transmittances(const Here& here, int packet, const Intersection<Numbers>& met,
-                                  const Mask& lanes) const {
-        return Numbers::by_lane(lanes, Numbers(Scalar(1)), [&](int lane) {
+    /// Of the rays in `lanes`; 1 for the others.
+    template <bool per_lane>
+    Numbers coated_transmittances(const Here& here, int packet, const Media& media, const Numbers& cos_incidence,
+                                  Mask lanes) const {
+        Numbers passing(Scalar(1));
+        if (const auto& of = lens_.indices[here.index]; of.clear_layer_count > 0) {
+            const auto look_up = [&](const Scalar* table) {
+                if constexpr (per_lane) {
+                    return Numbers::gather(table, rays_.wavelength + at(packet));
+                } else {
+                    return Numbers(*table);
+                }
+            };
+            const auto layer_at = clear_layer_at(lens_, of, kForward, look_up);
+            const ClearPowers<Numbers> found =
+                clear_coating_powers(of.clear_layer_count, layer_at, media.before, media.after, cos_incidence);
+            passing = select(lanes && found.holds, found.powers.unpolarised().transmitted, passing);
+            lanes = lanes && !found.holds;
+        }
+        return Numbers::by_lane(lanes, passing, [&](int lane) {
             const int wavelength = lens_.is_monochromatic ? 0 : rays_.wavelength[at(packet) + lane];
-            return lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward, met.cos_incidence[lane]);
+            return lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward, cos_incidence[lane]);
         });
     }
 

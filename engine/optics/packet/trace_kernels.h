@@ -15,6 +15,7 @@ struct KernelLens {
     const SpecialSurface<T>* specials = nullptr;
     const SpectralLens<T>* lens = nullptr;  // for what is done ray by ray
     int count = 0;
+    int wavelengths = 1;
     bool is_monochromatic = false;  // `wavelength` of the rays is then not looked at
     bool absorbs = false;
 };

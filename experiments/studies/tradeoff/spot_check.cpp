@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <vector>
 
 #include "engine/base/input_error.h"
+#include "engine/base/parallel.h"
 #include "engine/render/prepared_scene.h"
 #include "experiments/studies/tradeoff/picture_error.h"
 
@@ -42,16 +44,26 @@ Image render_windows(const render::Render& render, const std::vector<render::Pix
     render::FilmLayout layout = render.film;
     layout.layer_nm = {layout.layer_nm.front()};  // its colours alone
     render::Film film(layout);
-    render::FilmTile tile(layout);
+    std::mutex at_film;
+    const auto make_worker = [&] {
+        return [&, renderer = render.renderer, tile = render::FilmTile(layout)](int i) mutable {
+            const render::TileSamples samples{.rect = windows[static_cast<std::size_t>(i)],
+                                              .first = 0,
+                                              .end = static_cast<std::uint32_t>(settings.samples)};
+            {
+                const std::scoped_lock lock(at_film);
+                film.load(samples, tile);
+            }
+            renderer(samples, tile);
+            tile.finish();
+            const std::scoped_lock lock(at_film);
+            film.store(tile);
+        };
+    };
+    parallel_for_workers(static_cast<int>(windows.size()), settings.threads, make_worker, [](int) {});
     const int side = windows.front().width;
     Image image = formats::make_image(side * static_cast<int>(windows.size()), side, {"R", "G", "B"});
     for (std::size_t i = 0; i < windows.size(); ++i) {
-        const render::TileSamples samples{
-            .rect = windows[i], .first = 0, .end = static_cast<std::uint32_t>(settings.samples)};
-        film.load(samples, tile);
-        render.renderer(samples, tile);
-        tile.finish();
-        film.store(tile);
         for (int y = 0; y < side; ++y) {
             for (int x = 0; x < side; ++x) {
                 const Vec3d rgb = film.estimate(windows[i].x + x, windows[i].y + y).rgb;
@@ -77,6 +89,19 @@ std::vector<Image> render_seeds(const render::SceneSetup& setup, const std::vect
 }
 
 }  // namespace
+
+SpotCheckSettings SpotCheckSettings::for_render(const render::SceneSetup& setup) {
+    constexpr double kPart = 0.02;
+    constexpr double kPictures = 4.0;  // two seeds, as planned and with the full model
+    SpotCheckSettings settings;
+    const render::Sensor& sensor = setup.camera.sensor;
+    const double all = static_cast<double>(sensor.width) * sensor.height * setup.samples_per_pixel;
+    const double least = kPictures * settings.windows * settings.across * settings.across * settings.samples;
+    const double more = std::sqrt(std::max(1.0, kPart * all / least));
+    settings.windows = static_cast<int>(more * settings.windows);
+    settings.samples = static_cast<int>(more * settings.samples);
+    return settings;
+}
 
 Plan spot_checked(Plan plan, const render::SceneSetup& setup, const SpotCheckSettings& settings) {
     const auto start = std::chrono::steady_clock::now();

@@ -13,6 +13,10 @@ struct SpotCheckSettings {
     std::uint64_t seed = 0;
     int threads = 0;
     Cache cache{};
+
+    /// With more windows and more samples of each, alike, where the render has so many that the check takes a fiftieth
+    /// of them.
+    static SpotCheckSettings for_render(const render::SceneSetup& setup);
 };
 
 /// Renders windows of the scene's frame, at its own pixels, as planned and with the full model, two seeds each, and

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -56,6 +57,34 @@ TEST(Elementary, SinesAreWithinTwoUlp) {
         worst = std::max(worst, error_ulp(found.y, std::sin(static_cast<long double>(x))));
     }
     EXPECT_LT(worst, 2.0);
+}
+
+/// Of any turn, in ulps of 1.
+template <class T>
+double worst_turn() {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> all(-1.0, 1.0);
+    double worst = 0.0;
+    for (int i = 0; i < 200000; ++i) {
+        const auto x = static_cast<T>(all(random) * (i % 2 == 0 ? double{kMostTurned<T>} : 20.0));
+        const Vec2<T> found = cos_sin(x);
+        const auto away = [&](T number, long double exact) {
+            return static_cast<double>(std::abs(static_cast<long double>(number) - exact)) /
+                   double{std::numeric_limits<T>::epsilon()};
+        };
+        worst = std::max(worst, away(found.x, std::cos(static_cast<long double>(x))));
+        worst = std::max(worst, away(found.y, std::sin(static_cast<long double>(x))));
+    }
+    return worst;
+}
+
+TEST(Elementary, TurnsAreWithinAnUlpOfOne) {
+    EXPECT_LT(worst_turn<double>(), 1.0);
+    EXPECT_LT(worst_turn<float>(), 1.0);
+    for (const double x : {0.0, -0.0, 1e-300}) {
+        EXPECT_EQ(cos_sin(x), (Vec2d{1.0, x}));
+    }
+    EXPECT_EQ(cos_sin(1e9), (Vec2d{std::cos(1e9), std::sin(1e9)}));  // beyond what is reduced here
 }
 
 }  // namespace lensproof::elementary_test

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <random>
 #include <sstream>
 
 #include "engine/base/angle.h"
 #include "engine/base/csv.h"
+#include "engine/base/pack.h"
 #include "engine/optics/coating_amplitudes.h"
 #include "engine/optics/multiprecision.h"
 #include "engine/optics/refract.h"
@@ -441,6 +443,61 @@ TEST(Coating, AtALayersCriticalAngle) {
     }
     const TraceCoating<double> exact{.layers = {{1.6, 0.7}}};
     EXPECT_NEAR(coating_powers(exact, 1.6, 1.6, 1e-12, true).s.transmitted, 1.0, 1e-12);
+}
+
+/// A packet's i-th lane of each of a stack's numbers.
+template <class Numbers>
+TraceLayer<Numbers> layer_for_all(const TraceLayer<double>& layer) {
+    return {
+        .index = Numbers(layer.index), .thickness = Numbers(layer.thickness), .extinction = Numbers(layer.extinction)};
+}
+
+// Packets have a single ray's bits where they say that they know; where they do not, a wave fades in a layer, is
+// reflected totally, or a layer is no layer at all.
+TEST(Coating, OfPacketsIsThatOfEachRay) {
+    using Numbers = Pack<double, AbiOf<SimdLevel::baseline, double>>;
+    std::mt19937 random(3);
+    int known = 0;
+    int unknown = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const TraceCoating<double> stack = random_stack(random, 6, false);
+        Incidence of = random_incidence(random);
+        std::array<double, Numbers::kLanes> cosines{};
+        Numbers cosine;
+        for (int lane = 0; lane < Numbers::kLanes; ++lane) {
+            cosines[static_cast<std::size_t>(lane)] = random_incidence(random).cosine;
+            cosine.set(lane, cosines[static_cast<std::size_t>(lane)]);
+        }
+        const int count = static_cast<int>(stack.layers.size());
+        const double near = of.from_scene_side ? of.n1 : of.n2;
+        const double far = of.from_scene_side ? of.n2 : of.n1;
+        const auto found = clear_coating_powers(
+            count,
+            [&](int layer) {
+                return layer_for_all<Numbers>(
+                    stack.layers[static_cast<std::size_t>(of.from_scene_side ? count - 1 - layer : layer)]);
+            },
+            Numbers(near), Numbers(far), cosine);
+        for (int lane = 0; lane < Numbers::kLanes; ++lane) {
+            of.cosine = cosines[static_cast<std::size_t>(lane)];
+            if (!found.holds[lane]) {
+                ++unknown;
+                const double sine = near * std::sqrt(1.0 - of.cosine * of.cosine);
+                const bool passes = std::ranges::all_of(
+                    stack.layers, [&](const auto& layer) { return layer.index > sine * (1.0 + 1e-12); });
+                EXPECT_FALSE(passes && far > sine * (1.0 + 1e-12));
+                continue;
+            }
+            ++known;
+            const PolarisedPowers<double> alone = coating_powers(stack, of.n1, of.n2, of.cosine, of.from_scene_side);
+            EXPECT_EQ(found.powers.s.transmitted[lane], alone.s.transmitted);
+            EXPECT_EQ(found.powers.s.reflected[lane], alone.s.reflected);
+            EXPECT_EQ(found.powers.p.transmitted[lane], alone.p.transmitted);
+            EXPECT_EQ(found.powers.p.reflected[lane], alone.p.reflected);
+        }
+    }
+    EXPECT_GT(known, 5000);
+    EXPECT_GT(unknown, 5000);
 }
 
 // A stated reflectance is that at every angle; the light that the medium behind reflects totally is all reflected.

@@ -199,6 +199,19 @@ TEST(PictureFile, StatesNoMoreThanThereIs) {
     EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "states more than there is"));
 }
 
+// OpenImageIO 2.4 ends the program at such a file.
+TEST(PictureFile, HasPixelsOfATypeThatThereIs) {
+    const TestFolder folder;
+    std::string bytes = bytes_of_form(folder, ".exr");
+    const std::string channel("channels\0chlist\0", 16);
+    const std::size_t at = bytes.find(channel) + channel.size() + 4;  // the size stands between
+    const std::size_t type = bytes.find('\0', at) + 1;
+    ASSERT_LE(bytes.at(type), 2);
+    bytes[type] = 3;
+    const auto file = named(folder, "a.exr", bytes);
+    EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "a channel has pixels of type 3, expected 0, 1 or 2"));
+}
+
 // No limit is beyond the machine; a 32 × 32 picture is within every one.
 TEST(PictureFile, KnowsHowMuchMemoryThereIs) {
     EXPECT_GT(memory_bytes(), 64.0 * 1024 * 1024);

@@ -45,7 +45,7 @@ Fates compare_batch(const SpectralLens<T>& lens, const std::vector<Ray<double>>&
                                            : trace<direction, Rims::follow>(at, ray));
         ++fates[static_cast<std::size_t>(alone.back().status)];
     }
-    // A GPU's sines, which coatings take, are not this machine's.
+    // A GPU's exponentials, which coatings take where light fades in a layer, are not this machine's.
     const auto expect_same = [&](const std::string& by, double transmittance_tolerance, const auto& trace_batch_so) {
         RayBatch<T> batch = given;
         trace_batch_so(batch);

@@ -39,6 +39,23 @@ TEST(SpotCheck, LeavesAPlanThatKeeps) {
     EXPECT_GT(plan.spots.pixels, 1000);
 }
 
+// A fiftieth of a large render's samples goes into windows, of which there are then more, each with more of them.
+TEST(SpotCheck, IsAsThoroughAsTheRenderAllows) {
+    render::SceneSetup scene = wall("tessar", 8.0, 10.0);
+    scene.samples_per_pixel = 1;
+    const SpotCheckSettings small = SpotCheckSettings::for_render(scene);
+    EXPECT_EQ(small.windows, SpotCheckSettings().windows);
+    EXPECT_EQ(small.samples, SpotCheckSettings().samples);
+    scene.camera.sensor.width = 6000;
+    scene.camera.sensor.height = 4000;
+    scene.samples_per_pixel = 64;
+    const SpotCheckSettings large = SpotCheckSettings::for_render(scene);
+    const double taken = 4.0 * large.windows * large.across * large.across * large.samples;
+    EXPECT_NEAR(taken, 0.02 * 6000 * 4000 * 64, 0.03 * taken);  // windows and samples are whole numbers
+    EXPECT_NEAR(static_cast<double>(large.windows) / small.windows, static_cast<double>(large.samples) / small.samples,
+                0.1);
+}
+
 // Where no cheaper render is near enough, at last it is the full model: four wavelengths are surely not as bright
 // as 16.
 TEST(SpotCheck, EndsWithTheFullModel) {
