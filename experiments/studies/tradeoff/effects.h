@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/studies/tradeoff/pilot.h"
+#include "experiments/studies/tradeoff/smooth_light.h"
 #include "experiments/studies/tradeoff/tolerance.h"
 
 namespace lensproof::studies {
@@ -28,10 +29,11 @@ struct Effect {
 std::vector<Effect> lens_effects(const Pilot& pilot);
 
 /// Light that goes astray: ghosts, faint-ghosts, barrel, diffraction. By a few samples of the first's and the third's
-/// passes, from lamps beside the frame too: how much light it is, as an even veil over the picture. Faint ghosts by the
-/// square of that, at the most; diffraction by what leaves a pixel, and by the blur of its Airy core. Where there are
-/// no such passes, ghosts are bounded by what pairs of surfaces reflect along the axis.
-std::vector<Effect> stray_effects(const Pilot& pilot);
+/// passes, from lamps beside the frame too: how much light it is, as an even veil over the picture; by `films` where
+/// these few leave it open whether that is within the tolerance. Faint ghosts by the square of the ghosts, at the most;
+/// diffraction by what leaves a pixel, and by the blur of its Airy core. Where there are no such passes, ghosts are
+/// bounded by what pairs of surfaces reflect along the axis.
+std::vector<Effect> stray_effects(const Pilot& pilot, const Tolerance& tolerance, KeptFilms& films);
 
 /// What pictures are off by that differ in one thing and have the pilot's seeds: the exposure is that of all of the
 /// picture.

@@ -15,7 +15,8 @@ struct PilotSettings {
     int samples = 16;            // of a pixel and a seed
     int stray_samples = 8;       // the same, of light that goes astray
     int smooth_pixels = 60'000;  // of what tells how smooth stray light is (smooth_light.h)
-    int smooth_samples = 6;      // of a pixel and a seed
+    int few_smooth_samples = 2;  // of a pixel and a seed
+    int smooth_samples = 6;      // where these do not tell
     int seeds = 2;
     int points = 24;
     ProbeSettings probe{.rays = 96, .repetitions = 2};

@@ -101,8 +101,8 @@ void add_smoothing(const Pilot& pilot, const PlannedRender& planned, const std::
         if (std::ranges::count(passes, smooth.pass) == 0) {
             continue;
         }
-        const Contribution lost =
-            veil_contribution(pilot, smooth_light(pilot, smooth.pass, pilot.settings().seeds).lost(smooth.sigma_px));
+        const PassFilms films = pass_films(pilot, smooth.pass, pilot.settings().seeds, pilot.settings().smooth_samples);
+        const Contribution lost = veil_contribution(pilot, films.smoothness(pilot).lost(smooth.sigma_px));
         add(error.ev, lost.ev);
         add(error.ciede2000, lost.ciede2000);
     }
@@ -125,7 +125,7 @@ class Planner {
         for (Effect& effect : lens_effects(pilot_)) {
             plan(std::move(effect));
         }
-        std::vector<Effect> stray = stray_effects(pilot_);
+        std::vector<Effect> stray = stray_effects(pilot_, tolerance_, films_);
         full_ns_ = pilot_.full().ns_per_sample;
         for (const Effect& effect : stray) {
             full_ns_ += effect.ns_per_sample;
@@ -238,23 +238,35 @@ class Planner {
     /// Of passes that are rendered: spread as widely as their light is smooth, with fewer samples.
     void choose_smoothings() {
         for (PlannedEffect& planned : plan_.effects) {
-            const std::string& pass = planned.effect.pass;
-            if (!planned.is_modelled || pass.empty()) {
+            if (!planned.is_modelled || planned.effect.pass.empty()) {
                 continue;
             }
-            const SmoothLight light = smooth_light(pilot_, pass, 0);
-            for (const double sigma_px : kSmoothings) {
-                LeftOut with = budget_;
-                with.add(veil_contribution(pilot_, light.lost(sigma_px)));
-                if (with.keeps(tolerance_)) {
-                    budget_ = with;
-                    plan_.render.smooth.push_back({pass, sigma_px, kFewerWhereSmooth});
-                    planned.why += fmt::format("; smooth as it is, spread over {:g} px it needs 1/{} of the samples",
-                                               sigma_px, kFewerWhereSmooth);
-                    break;
-                }
+            const PilotSettings& settings = pilot_.settings();
+            if (!take_smoothing(planned, settings.few_smooth_samples)) {
+                take_smoothing(planned, settings.smooth_samples);
             }
         }
+    }
+
+    /// The widest that films of so many samples show to be within the tolerance. Whether there is nothing to be gained
+    /// by more.
+    bool take_smoothing(PlannedEffect& planned, int samples) {
+        const std::string& pass = planned.effect.pass;
+        const SmoothLight light = films_.of(pass, samples).smoothness(pilot_);
+        Contribution lost;
+        for (const double sigma_px : kSmoothings) {
+            lost = veil_contribution(pilot_, light.lost(sigma_px));
+            LeftOut with = budget_;
+            with.add(lost);
+            if (with.keeps(tolerance_)) {
+                budget_ = with;
+                plan_.render.smooth.push_back({pass, sigma_px, kFewerWhereSmooth});
+                planned.why += fmt::format("; smooth as it is, spread over {:g} px it needs 1/{} of the samples",
+                                           sigma_px, kFewerWhereSmooth);
+                return true;
+            }
+        }
+        return !keeps(surely(lost), tolerance_);
     }
 
     /// The cheapest of these cameras that the check does not refuse.
@@ -342,6 +354,7 @@ class Planner {
     }
 
     Pilot pilot_;
+    KeptFilms films_{pilot_};
     Tolerance tolerance_;
     LeftOut budget_;
     double full_ns_ = 0.0;  // of a sample with all passes

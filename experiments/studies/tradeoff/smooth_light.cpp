@@ -6,8 +6,10 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "calibration/comparison/colour_planes.h"
 #include "engine/render/film/film_image.h"
 #include "experiments/studies/tradeoff/pilot_changes.h"
+#include "experiments/studies/tradeoff/processor_time.h"
 #include "experiments/studies/tradeoff/rungs.h"
 
 namespace lensproof::studies {
@@ -89,19 +91,53 @@ Measured SmoothLight::lost(double sigma_px) const {
     return root(is_in_points ? beyond(std::max(1.0, sigma)) : least);
 }
 
-SmoothLight smooth_light(const Pilot& pilot, const std::string& pass, int first_seed) {
+Measured PassFilms::share(const Pilot& pilot) const {
+    double sum = 0.0;
+    double squares = 0.0;
+    const std::size_t pixels = rgb[0].pixels.size() / rgb[0].channels.size();
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const double one = calibration::luminance(calibration::rgb_at(rgb[0], i));
+        const double other = calibration::luminance(calibration::rgb_at(rgb[1], i));
+        sum += 0.5 * (one + other);
+        squares += 0.25 * (one - other) * (one - other);
+    }
+    double straight = 0.0;
+    for (const formats::Image& picture : pilot.full().rgb) {
+        straight += calibration::luminance(mean_rgb(picture)) / static_cast<double>(pilot.full().rgb.size());
+    }
+    const double whole = straight * static_cast<double>(pixels);
+    return {sum / whole, std::sqrt(squares) / whole};
+}
+
+SmoothLight PassFilms::smoothness(const Pilot& pilot) const {
+    return {rgb, mean_rgb(pilot.full().rgb.front()),
+            static_cast<double>(pilot.setup().camera.sensor.width) / rgb.front().width};
+}
+
+PassFilms pass_films(const Pilot& pilot, const std::string& pass, int first_seed, int samples) {
     const PilotSettings& settings = pilot.settings();
     const render::SceneSetup small = with_pixels(pilot.setup(), settings.smooth_pixels);
     render::PreparedScene scene(small, render::PixelFilter{}, settings.cache);
-    SmoothLight::Films films;
-    for (std::size_t i = 0; i < films.size(); ++i) {
+    PassFilms films;
+    for (std::size_t i = 0; i < films.rgb.size(); ++i) {
         const std::uint64_t seed = settings.probe.seed + static_cast<std::uint64_t>(first_seed) + i;
         const std::vector<render::Render> renders = scene.render(std::vector{pass}, seed, false, false);
-        const render::SampleRange range{.first = 0, .end = static_cast<std::uint32_t>(settings.smooth_samples)};
-        films[i] = render::film_rgb(render::render_film(renders.front(), range, settings.probe.threads));
+        const render::SampleRange range{.first = 0, .end = static_cast<std::uint32_t>(samples)};
+        const double start = processor_seconds();
+        films.rgb[i] = render::film_rgb(render::render_film(renders.front(), range, settings.probe.threads));
+        const double taken = static_cast<double>(small.camera.sensor.width) * small.camera.sensor.height * samples *
+                             static_cast<double>(films.rgb.size());
+        films.ns_per_sample += 1e9 * (processor_seconds() - start) / taken;
     }
-    return {films, mean_rgb(pilot.full().rgb.front()),
-            static_cast<double>(pilot.setup().camera.sensor.width) / small.camera.sensor.width};
+    return films;
+}
+
+const PassFilms& KeptFilms::of(const std::string& pass, int samples) {
+    const std::pair key(pass, samples);
+    if (!films_.contains(key)) {
+        films_.emplace(key, pass_films(*pilot_, pass, 0, samples));
+    }
+    return films_.at(key);
 }
 
 }  // namespace lensproof::studies

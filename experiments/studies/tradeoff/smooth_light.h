@@ -2,7 +2,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "experiments/studies/tradeoff/pilot.h"
 
@@ -39,9 +41,30 @@ class SmoothLight {
     double coarser_;
 };
 
-/// Of a pass of the pilot's scene, with seeds from `first_seed` on. Throws InputError where the camera has no such
+/// A pass of a pilot's scene by itself, of more pixels than the pilot's.
+struct PassFilms {
+    SmoothLight::Films rgb;
+    double ns_per_sample = 0.0;  // of one core
+
+    /// Their light over all that goes straight. Its error is what the films differ by, pixel by pixel.
+    [[nodiscard]] Measured share(const Pilot& pilot) const;
+    [[nodiscard]] SmoothLight smoothness(const Pilot& pilot) const;
+};
+
+/// With seeds from `first_seed` on, `samples` of a pixel and a seed. Throws InputError where the camera has no such
 /// light.
-SmoothLight smooth_light(const Pilot& pilot, const std::string& pass, int first_seed);
+PassFilms pass_films(const Pilot& pilot, const std::string& pass, int first_seed, int samples);
+
+/// Those with seeds from 0 on, rendered when they are first asked for.
+class KeptFilms {
+  public:
+    explicit KeptFilms(const Pilot& pilot) : pilot_(&pilot) {}
+    const PassFilms& of(const std::string& pass, int samples);
+
+  private:
+    const Pilot* pilot_;
+    std::map<std::pair<std::string, int>, PassFilms> films_;
+};
 
 /// How a pass is rendered whose light is smooth: spread by the widest that may be of these, px, and with so many fewer
 /// samples. The narrowest leaves a third of the variance that all samples would (render::smoothing_gain).

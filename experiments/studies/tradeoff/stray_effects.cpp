@@ -51,23 +51,33 @@ Effect veil_effect(const Pilot& pilot, const std::string& name, const Veil& veil
     return {.name = name, .contribution = veil_contribution(pilot, veil.share), .ns_per_sample = veil.ns_per_sample};
 }
 
-/// Of a pass: its light over all that goes straight.
-Veil veil_of(const Pilot& pilot, const std::string& pass) {
+/// Of a pass, by a few samples: its light over all that goes straight.
+Veil quick_veil(const Pilot& pilot, const std::string& pass) {
     const Pilot::Pictures with = pilot.with_pass(pass);
     const Measured ev = picture_errors(with.rgb, pilot.full().rgb, pilot.settings().probe.threads).exposure_ev;
     const double gain = std::exp2(ev.value);
     return {.share = {gain - 1.0, std::numbers::ln2 * gain * ev.standard_error}, .ns_per_sample = with.ns_per_sample};
 }
 
-std::vector<Effect> found_by_passes(const Pilot& pilot) {
-    const Veil ghosts = veil_of(pilot, "ghosts");
+/// The same, by many where a few do not show it to be within the tolerance.
+Veil veil_of(const Pilot& pilot, const std::string& pass, const Tolerance& tolerance, KeptFilms& films) {
+    const Veil quick = quick_veil(pilot, pass);
+    if (keeps(veil_contribution(pilot, quick.share), tolerance)) {
+        return quick;
+    }
+    const PassFilms& many = films.of(pass, pilot.settings().few_smooth_samples);
+    return {.share = many.share(pilot), .ns_per_sample = many.ns_per_sample};
+}
+
+std::vector<Effect> found_by_passes(const Pilot& pilot, const Tolerance& tolerance, KeptFilms& films) {
+    const Veil ghosts = veil_of(pilot, "ghosts", tolerance, films);
     const double most = ghosts.share.value + 2.0 * ghosts.share.standard_error;
     std::vector<Effect> effects = {veil_effect(pilot, "ghosts", ghosts),
                                    veil_effect(pilot, "faint-ghosts", {{most * most, 0.0}, ghosts.ns_per_sample})};
     effects[1].is_bound = true;
     const bool is_black = optics::Barrel(*pilot.camera().lens()).is_black();
     if (!is_black) {
-        effects.push_back(veil_effect(pilot, "barrel", veil_of(pilot, "barrel")));
+        effects.push_back(veil_effect(pilot, "barrel", veil_of(pilot, "barrel", tolerance, films)));
     }
     for (Effect& effect : effects) {
         effect.pass = effect.name;
@@ -94,12 +104,12 @@ std::vector<Effect> bounds(const Pilot& pilot, const std::string& no_pass) {
     return effects;
 }
 
-std::vector<Effect> ghosts_and_barrel(const Pilot& pilot) {
+std::vector<Effect> ghosts_and_barrel(const Pilot& pilot, const Tolerance& tolerance, KeptFilms& films) {
     if (!pilot.has_passes()) {
         return bounds(pilot, kNone);
     }
     try {
-        return found_by_passes(pilot);
+        return found_by_passes(pilot, tolerance, films);
     } catch (const InputError& error) {
         return bounds(pilot, error.what());
     }
@@ -149,8 +159,8 @@ Contribution veil_contribution(const Pilot& pilot, const Measured& share) {
     return found;
 }
 
-std::vector<Effect> stray_effects(const Pilot& pilot) {
-    std::vector<Effect> effects = ghosts_and_barrel(pilot);
+std::vector<Effect> stray_effects(const Pilot& pilot, const Tolerance& tolerance, KeptFilms& films) {
+    std::vector<Effect> effects = ghosts_and_barrel(pilot, tolerance, films);
     effects.push_back(diffraction_veil(pilot, effects.front().ns_per_sample));
     Effect& diffraction = effects.back();
     const Contribution core = airy_core(pilot);

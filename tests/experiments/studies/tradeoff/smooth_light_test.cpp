@@ -8,6 +8,9 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "experiments/studies/tradeoff/picture_error.h"
+#include "tests/experiments/studies/tradeoff/wall_scene.h"
+
 namespace lensproof::studies::smooth_light_test {
 
 constexpr int kWidth = 300;
@@ -84,6 +87,27 @@ TEST(SmoothLight, IsHeldByItsErrorsWhateverTheNoise) {
     }
     const Measured found = lost(slope, 1.0, 4.0);
     EXPECT_LT(found.value + 2.0 * found.standard_error, 0.02);
+}
+
+// As a few samples of the pilot's pixels find them, and surer.
+TEST(SmoothLight, OfAPassHasThePassesLight) {
+    const Pilot pilot(wall("tessar", 4.5, 20.0), {});
+    const Measured many = pass_films(pilot, "ghosts", 0, pilot.settings().smooth_samples).share(pilot);
+    const Measured few_ev =
+        picture_errors(pilot.with_pass("ghosts").rgb, pilot.full().rgb, pilot.settings().probe.threads).exposure_ev;
+    const double gain = std::exp2(few_ev.value);
+    const double few_error = std::log(2.0) * gain * few_ev.standard_error;
+    EXPECT_GT(many.value, 10.0 * many.standard_error);
+    EXPECT_LT(many.standard_error, few_error);
+    EXPECT_NEAR(many.value, gain - 1.0, 4.0 * std::hypot(many.standard_error, few_error));
+}
+
+TEST(SmoothLight, KeptFilmsAreRenderedOnce) {
+    const Pilot pilot(wall("tessar", 4.5, 20.0), {.smooth_pixels = 600});
+    KeptFilms films(pilot);
+    const PassFilms& first = films.of("ghosts", 1);
+    EXPECT_NE(&films.of("ghosts", 2), &first);
+    EXPECT_EQ(&films.of("ghosts", 1), &first);
 }
 
 }  // namespace lensproof::studies::smooth_light_test
