@@ -43,7 +43,7 @@ struct PolynomialKernels {
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 const PolynomialKernels& polynomial_kernels(std::optional<SimdLevel> level = {});
 
-/// Compiled for each level by itself (engine/CMakeLists.txt).
+/// Compiled for each level by itself (.ci/rooms.cmake).
 template <SimdLevel level>
 PolynomialKernels polynomial_kernels_at();
 

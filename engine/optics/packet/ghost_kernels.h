@@ -26,7 +26,7 @@ struct GhostKernels {
     void (*follow)(const KernelLens<double>& lens, const GhostWay& way, FollowedRays& rays) = nullptr;
 };
 
-/// Compiled for each level by itself (engine/CMakeLists.txt).
+/// Compiled for each level by itself (.ci/rooms.cmake).
 template <SimdLevel level>
 GhostKernels ghost_kernels_at();
 

@@ -1,6 +1,6 @@
 // engine/optics/packet/trace_kernel.h — the packet tracer's inner loop, compiled once for each width of packets.
 //
-// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it
+// Only a file for each level includes this (.ci/rooms.cmake), compiled for its own instructions, so what it
 // defines must not be shared with code for other machines: everything here is a template over the packs' Abi, and
 // inlined.
 #pragma once

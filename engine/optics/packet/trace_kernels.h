@@ -48,7 +48,7 @@ struct LevelKernels {
     TraceKernels<float> in_float;
     TraceKernels<double> in_double;
 };
-/// Compiled for each level by itself (engine/CMakeLists.txt).
+/// Compiled for each level by itself (.ci/rooms.cmake).
 template <SimdLevel level>
 LevelKernels trace_kernels_at();
 

@@ -38,7 +38,7 @@ struct PathKernels {
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 const PathKernels& path_kernels(std::optional<SimdLevel> level);
 
-/// Compiled for each level by itself (engine/CMakeLists.txt).
+/// Compiled for each level by itself (.ci/rooms.cmake).
 template <SimdLevel level>
 PathKernels path_kernels_at();
 

@@ -35,7 +35,7 @@ struct NumberKernels {
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 const NumberKernels& number_kernels(std::optional<SimdLevel> level = {});
 
-/// Compiled for each level by itself (engine/CMakeLists.txt).
+/// Compiled for each level by itself (.ci/rooms.cmake).
 template <SimdLevel level>
 NumberKernels number_kernels_at();
 

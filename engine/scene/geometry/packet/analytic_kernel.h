@@ -1,6 +1,6 @@
 // engine/scene/geometry/packet/analytic_kernel.h — many rays against spheres and quads, for compilers to vectorise.
 //
-// Only a file for each level includes this (engine/CMakeLists.txt), compiled for its own instructions, so what it
+// Only a file for each level includes this (.ci/rooms.cmake), compiled for its own instructions, so what it
 // defines must not be shared with code for other machines: everything here is a template over the packs' Abi, and
 // inlined.
 #pragma once

@@ -37,7 +37,7 @@ struct AnalyticKernels {
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 const AnalyticKernels& analytic_kernels(std::optional<SimdLevel> level = {});
 
-/// Compiled for each level by itself (engine/CMakeLists.txt).
+/// Compiled for each level by itself (.ci/rooms.cmake).
 template <SimdLevel level>
 AnalyticKernels analytic_kernels_at();
 
