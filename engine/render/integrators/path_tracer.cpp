@@ -19,9 +19,8 @@ class PathWalk {
 
     [[nodiscard]] const Ray<double>& ray() const { return ray_; }
 
-    /// Asks memory for what the ray will look up if it leaves the scene. Camera rays mostly meet something, and
-    /// otherwise look up what their neighbours have.
-    void look_ahead() { ahead_ = bounce_ > 0 ? scene_->lights.expect_infinity(ray_.direction) : scene::MapPlace{}; }
+    /// Asks memory for what the ray will look up, which has left the scene.
+    void look_ahead() { ahead_ = scene_->lights.expect_infinity(ray_.direction); }
 
     [[nodiscard]] PathSampler& sampler() { return start_->numbers; }
     using Numbers = std::array<double, PathSampler::kNumbers>;
@@ -247,10 +246,14 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
     while (!going.empty()) {
         rays.clear();
         for (PathWalk* walk : going) {
-            walk->look_ahead();
             rays.push_back(walk->ray());
         }
         scene::intersect(*scene.geometry, rays, hits);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (!hits[i]) {
+                going[i]->look_ahead();
+            }
+        }
         give_numbers(going, hits);
         seeing.clear();
         ways.clear();
@@ -281,12 +284,13 @@ PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const
     PathStart start{.ray = ray, .path = path, .numbers = numbers};
     PathWalk walk(scene, settings, start);
     for (bool is_going = true; is_going;) {
-        walk.look_ahead();
         const auto [origin, direction] = walk.ray();
         const auto hit = scene::intersect(*scene.geometry, origin, direction, 0.0, kInfinity);
         if (hit) {
             const PathWalk::Numbers next = walk.sampler().next();
             walk.take_numbers(next, walk.sampler().peek());
+        } else {
+            walk.look_ahead();
         }
         is_going = walk.arrive(hit);
         const scene::Segment* way = walk.to_light();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/angle.h"
+#include "engine/base/elementary.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::scene {
@@ -99,11 +100,10 @@ Environment::Draw Environment::draw(double u1, double u2) const {
     const PixelDistribution::Draw drawn = places_.draw(u1, u2);
     const Vec2d uv{drawn.at.x, 1.0 - drawn.at.y};
     fetch(picture_, uv);
-    const double polar = kPi * drawn.at.y;
-    const double turn = 2.0 * kPi * (0.5 - drawn.at.x);  // counter-clockwise: to the left in the picture
-    const double sine = std::sin(polar);
-    const Vec3d local{sine * std::cos(turn), sine * std::sin(turn), std::cos(polar)};
-    return {frame_.to_world(local), uv, per_solid_angle(drawn.pdf, sine)};
+    const auto [cosine, sine] = cos_sin_within(kPi * drawn.at.y);
+    // Counter-clockwise: to the left in the picture.
+    const auto [ahead, left] = cos_sin_within(2.0 * kPi * (0.5 - drawn.at.x));
+    return {frame_.to_world({sine * ahead, sine * left, cosine}), uv, per_solid_angle(drawn.pdf, sine)};
 }
 
 Vec2d Environment::uv_of(const Vec3d& local) {

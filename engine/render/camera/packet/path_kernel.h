@@ -169,9 +169,9 @@ template <class Abi>
     }
 }
 
-template <SimdLevel level>
-PathKernels path_kernels_at() {
-    using Abi = AbiOf<level, double>;
+template <>
+PathKernels path_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
+    using Abi = AbiOf<SimdLevel::LENSPROOF_LEVEL, double>;
     return {.draw_samples = draw_samples<Abi>,
             .draw_pupil_points = draw_pupil_points<Abi>,
             .aim_rays = aim_rays<Abi>,
@@ -180,7 +180,5 @@ PathKernels path_kernels_at() {
             .weigh_pupil_points = weigh_pupil_points<Abi>,
             .share_rays = share_rays<Abi>};
 }
-
-template PathKernels path_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::render

@@ -46,12 +46,10 @@ template <class Abi>
     }
 }
 
-template <SimdLevel level>
-NumberKernels number_kernels_at() {
-    using Abi = AbiOf<level, std::uint32_t>;
+template <>
+NumberKernels number_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
+    using Abi = AbiOf<SimdLevel::LENSPROOF_LEVEL, std::uint32_t>;
     return {.draw = draw_numbers<Abi>};
 }
-
-template NumberKernels number_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::render

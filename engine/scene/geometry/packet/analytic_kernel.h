@@ -40,12 +40,10 @@ template <class Abi>
     }
 }
 
-template <SimdLevel level>
-AnalyticKernels analytic_kernels_at() {
-    using Abi = AbiOf<level, double>;
+template <>
+AnalyticKernels analytic_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
+    using Abi = AbiOf<SimdLevel::LENSPROOF_LEVEL, double>;
     return {.meet_nearest = meet_nearest<Abi>};
 }
-
-template AnalyticKernels analytic_kernels_at<SimdLevel::LENSPROOF_LEVEL>();
 
 }  // namespace lensproof::scene
