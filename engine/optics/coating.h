@@ -156,11 +156,11 @@ constexpr void cross_layer(PolarisedFields<T>& fields, const Number& cosine, con
     cross(fields.p, sine_by_q * n_squared, sine_times_q / n_squared);
 }
 
-/// Beyond this size what fields have grown by is kept apart.
+/// Beyond this magnitude what fields have grown by is kept apart.
 inline constexpr double kLargeFields = 1e10;
 
 template <class T>
-constexpr T size_of(const StackFields<T>& of) {
+constexpr T magnitude(const StackFields<T>& of) {
     using std::abs;
     return abs(of.first.real) + abs(of.first.imag) + abs(of.second.real) + abs(of.second.imag);
 }
@@ -199,7 +199,8 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
         }
         for (StackFields<T>* of : {&fields.s, &fields.p}) {
             of->scale = of->scale * wave.decay;
-            if (const T large(kLargeFields); size_of(*of) > large) {  // a mirror's fields grow with each of its layers
+            if (const T large(kLargeFields);
+                magnitude(*of) > large) {  // a mirror's fields grow with each of its layers
                 of->first = of->first / large;
                 of->second = of->second / large;
                 of->scale = of->scale / large;
@@ -240,7 +241,7 @@ constexpr ClearPowers<T> clear_coating_powers(int count, const LayerAt& layer_at
         const auto [cosine, sine] = cos_sin_within(phase);
         cross_layer(fields, cosine, sine / q, q_squared, n * n);
         for (const StackFields<T>* of : {&fields.s, &fields.p}) {
-            holds = holds && size_of(*of) <= T(Number(kLargeFields));
+            holds = holds && magnitude(*of) <= T(Number(kLargeFields));
         }
     }
     return {.powers = {fields.s.powers(), fields.p.powers()}, .holds = holds};

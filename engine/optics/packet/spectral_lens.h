@@ -35,9 +35,9 @@ class SpectralLens {
         const T* reverse_ratio;
         const T* attenuation_before;
         const T* attenuation_after;
-        const T* clear_layers =
-            nullptr;                // of its coating from the scene's side, where none absorbs: of each the index,
-        int clear_layer_count = 0;  // then the thickness; 0: not such a coating
+        /// Of its coating's layers from the scene's side, where none absorbs: of each the index, then the thickness.
+        const T* clear_layers = nullptr;
+        int clear_layer_count = 0;  // 0: it has no such coating
     };
     [[nodiscard]] const std::vector<Indices>& indices() const { return indices_; }
     /// Whether a medium absorbs at one of the wavelengths.

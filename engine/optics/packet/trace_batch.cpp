@@ -33,7 +33,6 @@ KernelLens<T> kernel_lens(const SpectralLens<T>& lens) {
             .lens = &lens,
             .count = static_cast<int>(surfaces.size()),
             .wavelengths = lens.wavelengths(),
-            .is_monochromatic = lens.wavelengths() == 1,
             .absorbs = lens.absorbs()};
 }
 

@@ -138,16 +138,20 @@ class BlockTracer {
         return Numbers::iota() + Numbers(static_cast<Scalar>(packet * kLanes)) < Numbers(static_cast<Scalar>(count));
     }
 
+    /// Of a table of the lens, what each lane's wavelength has there.
+    template <bool per_lane>
+    [[nodiscard]] Numbers by_wavelength(const Scalar* table, int packet) const {
+        if constexpr (per_lane) {
+            return Numbers::gather(table, rays_.wavelength + at(packet));
+        } else {
+            return Numbers(*table);
+        }
+    }
+
     template <bool per_lane, bool with_indices = carry != Carry::geometry>
     [[nodiscard]] Media media(int surface, int packet) const {
         const auto& of = lens_.indices[surface];
-        const auto look_up = [&](const Scalar* table) {
-            if constexpr (per_lane) {
-                return Numbers::gather(table, rays_.wavelength + at(packet));
-            } else {
-                return Numbers(*table);
-            }
-        };
+        const auto look_up = [&](const Scalar* table) { return by_wavelength<per_lane>(table, packet); };
         Media found{.ratio = look_up(kForward ? of.forward_ratio : of.reverse_ratio), .before = {}, .after = {}};
         if constexpr (with_indices) {
             found.before = look_up(kForward ? of.before : of.after);
@@ -173,8 +177,8 @@ class BlockTracer {
                         .limit = limit > Scalar(0) ? limit : Scalar(-1)};
         const bool from_far = !clip_ || (kForward ? surface.from_far_forward : surface.from_far_reverse);
         if (surface.special >= 0) {
-            lens_.is_monochromatic ? pass_special<false>(here) : pass_special<true>(here);
-        } else if (lens_.is_monochromatic) {
+            lens_.is_monochromatic() ? pass_special<false>(here) : pass_special<true>(here);
+        } else if (lens_.is_monochromatic()) {
             from_far ? pass_packets<true, false>(here) : pass_packets<false, false>(here);
         } else {
             from_far ? pass_packets<true, true>(here) : pass_packets<false, true>(here);
@@ -278,12 +282,7 @@ class BlockTracer {
     [[gnu::noinline]] void deepen(int surface, int packet, const Numbers& distance, const Mask& lanes) {
         const auto& of = lens_.indices[surface];
         const Scalar* table = kForward ? of.attenuation_before : of.attenuation_after;
-        Numbers attenuation;
-        if constexpr (per_lane) {
-            attenuation = Numbers::gather(table, rays_.wavelength + at(packet));
-        } else {
-            attenuation = Numbers(*table);
-        }
+        const Numbers attenuation = by_wavelength<per_lane>(table, packet);
         Scalar* depth = depth_.data() + packet * kLanes;
         const Numbers so_far = Numbers::load(depth);
         select(lanes, so_far + attenuation * distance, so_far).store(depth);
@@ -412,13 +411,7 @@ class BlockTracer {
                                   Mask lanes) const {
         Numbers passing(Scalar(1));
         if (const auto& of = lens_.indices[here.index]; of.clear_layer_count > 0) {
-            const auto look_up = [&](const Scalar* table) {
-                if constexpr (per_lane) {
-                    return Numbers::gather(table, rays_.wavelength + at(packet));
-                } else {
-                    return Numbers(*table);
-                }
-            };
+            const auto look_up = [&](const Scalar* table) { return by_wavelength<per_lane>(table, packet); };
             const auto layer_at = clear_layer_at(lens_, of, kForward, look_up);
             const ClearPowers<Numbers> found =
                 clear_coating_powers(of.clear_layer_count, layer_at, media.before, media.after, cos_incidence);
@@ -426,7 +419,7 @@ class BlockTracer {
             lanes = lanes && !found.holds;
         }
         return Numbers::by_lane(lanes, passing, [&](int lane) {
-            const int wavelength = lens_.is_monochromatic ? 0 : rays_.wavelength[at(packet) + lane];
+            const int wavelength = lens_.is_monochromatic() ? 0 : rays_.wavelength[at(packet) + lane];
             return lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward, cos_incidence[lane]);
         });
     }

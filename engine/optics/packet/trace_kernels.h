@@ -16,8 +16,10 @@ struct KernelLens {
     const SpectralLens<T>* lens = nullptr;  // for what is done ray by ray
     int count = 0;
     int wavelengths = 1;
-    bool is_monochromatic = false;  // `wavelength` of the rays is then not looked at
     bool absorbs = false;
+
+    /// `wavelength` of the rays is then not looked at.
+    [[nodiscard]] bool is_monochromatic() const { return wavelengths == 1; }
 };
 
 template <class T>
