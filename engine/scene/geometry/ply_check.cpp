@@ -22,27 +22,34 @@ enum class PlyForm { ascii, little_endian, big_endian };
 struct PlyProperty {
     int bytes = 0;        // of a value
     int count_bytes = 0;  // of the number before a list's values; 0 where there is one value
+    bool is_count_signed = false;
 };
 
 struct PlyElement {
     std::string name;
     double count = 0.0;
     std::vector<PlyProperty> properties;
-    std::string_view header;  // its lines there
+    std::string header;  // of it and its properties, a line each
 };
 
-/// That Assimp knows.
+/// Of which Assimp knows the name, and there is something to read.
 bool is_of_meshes(const PlyElement& element) {
     constexpr std::array kNames = {"vertex", "face", "tristrips", "edge", "material"};
-    return std::ranges::find(kNames, element.name) != kNames.end();
+    return std::ranges::find(kNames, element.name) != kNames.end() && !element.properties.empty();
+}
+
+/// A property's name as Assimp may have it: it reads the first of a list's values where it expects one, also of none.
+std::string name_of(std::string_view name, bool is_list) {
+    constexpr std::array<std::string_view, 3> kLists = {"vertex_indices", "vertex_index", "texcoord"};
+    const bool is_lists = std::ranges::find(kLists, name) != kLists.end();
+    return is_list == is_lists ? printable(name) : std::string("other");
 }
 
 struct PlyHeader {
     PlyForm form = PlyForm::ascii;
+    std::string format;  // its line
     std::vector<PlyElement> elements;
-    std::string_view before;  // the first element's lines
-    std::string_view end;     // its last line
-    std::size_t size = 0;     // of the header, up to the first byte of the first element
+    std::size_t size = 0;  // of the header, up to the first byte of the first element
 };
 
 class PlyCheck {
@@ -52,21 +59,17 @@ class PlyCheck {
     std::string run() {
         const PlyHeader header = read_header();
         rest_ = content_.substr(header.size);
-        std::string head(header.before);
+        std::string head = "ply\n" + header.format;
         std::string body;
         for (const PlyElement& element : header.elements) {
-            const std::string_view before = rest_;
-            if (header.form == PlyForm::ascii) {
-                check_lines(element);
-            } else {
-                check_bytes(element, header.form);
-            }
+            const std::string values =
+                header.form == PlyForm::ascii ? take_lines(element) : std::string(take_bytes(element, header.form));
             if (is_of_meshes(element)) {
                 head += element.header;
-                body += before.substr(0, before.size() - rest_.size());
+                body += values;
             }
         }
-        return head.append(header.end) + body;
+        return head + "end_header\n" + body;
     }
 
   private:
@@ -113,7 +116,17 @@ class PlyCheck {
         if (!count || !(*count >= 0.0) || *count != std::floor(*count)) {
             refuse(fmt::format("its header promises '{}' of {}", printable(words[2]), printable(words[1])));
         }
-        return {.name = printable(words[1]), .count = *count};
+        const std::string name = printable(words[1]);
+        return {
+            .name = name, .count = *count, .properties = {}, .header = fmt::format("element {} {}\n", name, *count)};
+    }
+
+    static void add_property(PlyElement& element, const PlyProperty& property,
+                             const std::vector<std::string_view>& words) {
+        const bool is_list = property.count_bytes > 0;
+        element.properties.push_back(property);
+        element.header +=
+            fmt::format("{} {}\n", fmt::join(words.begin(), words.end() - 1, " "), name_of(words.back(), is_list));
     }
 
     PlyHeader read_header() const {
@@ -122,34 +135,31 @@ class PlyCheck {
         if (take_line(rest) != "ply") {
             refuse("it does not begin with 'ply'");
         }
-        std::size_t begin = 0;  // of the lines that are no element's yet
-        const auto lines_before = [&](std::string_view line) {
-            const auto end = static_cast<std::size_t>(line.data() - content_.data());
-            const std::string_view lines = content_.substr(begin, end - begin);
-            begin = end;
-            (header.elements.empty() ? header.before : header.elements.back().header) = lines;
-        };
         while (const auto line = take_line(rest)) {
             const std::vector<std::string_view> words = words_of(*line);
             if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
                 continue;
             }
-            if (words[0] == "end_header") {
-                lines_before(*line);
+            if (words[0] == "end_header" && !header.format.empty()) {
                 header.size = content_.size() - rest.size();
-                header.end = content_.substr(begin, header.size - begin);
                 return header;
             }
             if (words[0] == "format" && words.size() == 3) {
                 header.form = form_of(words[1]);
+                header.format = fmt::format("format {} 1.0\n", words[1]);
             } else if (words[0] == "element" && words.size() == 3) {
-                lines_before(*line);
                 header.elements.push_back(element_of(words));
             } else if (words[0] == "property" && words.size() == 3 && !header.elements.empty()) {
-                header.elements.back().properties.push_back({.bytes = size_of(words[1])});
+                add_property(header.elements.back(), {.bytes = size_of(words[1])}, words);
             } else if (words[0] == "property" && words.size() == 5 && words[1] == "list" && !header.elements.empty()) {
-                header.elements.back().properties.push_back(
-                    {.bytes = size_of(words[3]), .count_bytes = size_of(words[2])});
+                if (words[2].starts_with("float") || words[2] == "double") {
+                    refuse(fmt::format("its header says '{}'", printable(*line)));
+                }
+                add_property(header.elements.back(),
+                             {.bytes = size_of(words[3]),
+                              .count_bytes = size_of(words[2]),
+                              .is_count_signed = !words[2].starts_with('u')},
+                             words);
             } else {
                 refuse(fmt::format("its header says '{}'", printable(*line)));
             }
@@ -161,28 +171,41 @@ class PlyCheck {
         refuse(fmt::format("it ends within the {} {} of {}", element.name, at, element.count));
     }
 
-    void check_lines(const PlyElement& element) {
+    /// The values of an ASCII file, a line for each of the element.
+    std::string take_lines(const PlyElement& element) {
+        std::string lines;
         for (double i = 0; i < element.count; ++i) {
             const auto line = take_line(rest_);
             if (!line) {
                 refuse_end(element, i);
             }
             const std::vector<std::string_view> words = words_of(*line);
-            std::size_t needed = 0;
-            for (const PlyProperty& property : element.properties) {
-                const auto count = needed < words.size() ? parse_number(words[needed]) : std::nullopt;
-                if (!count || (property.count_bytes > 0 && !(*count >= 0.0 && *count <= kLongestList))) {
+            std::size_t at = 0;
+            const auto take_number = [&] {
+                const auto number = at < words.size() ? parse_number(words[at++]) : std::nullopt;
+                if (!number) {
                     refuse(fmt::format("the {} {} is '{}'", element.name, i, printable(*line)));
                 }
-                needed += property.count_bytes > 0 ? 1 + static_cast<std::size_t>(*count) : 1;
+                return *number;
+            };
+            for (const PlyProperty& property : element.properties) {
+                const double count = property.count_bytes > 0 ? take_number() : 1.0;
+                if (!(count >= 0.0) || count != std::floor(count)) {
+                    refuse(fmt::format("the {} {} is '{}'", element.name, i, printable(*line)));
+                }
+                for (double k = 0; k < count; ++k) {
+                    take_number();
+                }
             }
-            if (needed > words.size()) {
-                refuse(fmt::format("the {} {} is '{}'", element.name, i, printable(*line)));
-            }
+            lines +=
+                fmt::format("{}\n", fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(at), " "));
         }
+        return lines;
     }
 
-    void check_bytes(const PlyElement& element, PlyForm form) {
+    /// The same of a binary file.
+    std::string_view take_bytes(const PlyElement& element, PlyForm form) {
+        const std::string_view before = rest_;
         for (double i = 0; i < element.count; ++i) {
             std::size_t taken = 0;
             for (const PlyProperty& property : element.properties) {
@@ -192,6 +215,9 @@ class PlyCheck {
                         refuse_end(element, i);
                     }
                     values = whole_number(rest_.substr(taken, property.count_bytes), form);
+                    if (property.is_count_signed && values >> (8 * property.count_bytes - 1) != 0) {
+                        refuse(fmt::format("the {} {} has a list of less than nothing", element.name, i));
+                    }
                     taken += property.count_bytes;
                 }
                 if (values > (rest_.size() - std::min(taken, rest_.size())) / property.bytes) {
@@ -200,10 +226,11 @@ class PlyCheck {
                 taken += values * property.bytes;
             }
             if (taken == 0) {
-                return;  // an element without properties, of which any number is there
+                break;  // an element without properties, of which any number is there
             }
             rest_.remove_prefix(taken);
         }
+        return before.substr(0, before.size() - rest_.size());
     }
 
     static std::size_t whole_number(std::string_view bytes, PlyForm form) {
@@ -214,8 +241,6 @@ class PlyCheck {
         }
         return value;
     }
-
-    static constexpr double kLongestList = 1e6;
 
     std::string_view content_;
     std::string file_;

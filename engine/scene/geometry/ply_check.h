@@ -7,8 +7,9 @@
 namespace lensproof::scene {
 
 /// Throws InputError naming `file` unless the header is sound and every element that it promises is there, with all its
-/// properties: Assimp's own reader goes round for ever where a file ends early, and takes any count for true. Returns
-/// the content without elements that no mesh has, which PLY allows and Assimp takes for the next one's.
+/// properties: Assimp's own reader goes round for ever where a file ends early, or at carriage returns before its
+/// header's end, and takes any count for true. Returns the same mesh as plainly as PLY can say it: without comments,
+/// odd blanks, and elements that no mesh has, which PLY allows and Assimp takes for the next one's.
 std::string checked_ply(std::string_view content, const std::filesystem::path& file);
 
 }  // namespace lensproof::scene

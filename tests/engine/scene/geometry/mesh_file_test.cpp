@@ -183,6 +183,22 @@ TEST_F(MeshFileTest, EveryFormHoldsTheSameBox) {
     expect_box(
         read_mesh(write("binary_camera.ply", with(box_binary_ply(), std::string("\0\0\0\0\2\1\1\0\0\0\0\0", 12)))), 1.0,
         {0, 0, 0});
+    // Blanks where Assimp looks for a line's first letter, comments anywhere, and an element of nothing, however many.
+    const auto put = [](std::string ply, const std::string& before, const std::string& what) {
+        return ply.insert(ply.find(before), what);
+    };
+    expect_box(read_mesh(write("returns.ply", put(box_ply(), "end_header", "\n\r\r\rcomment\r\r"))), 1.0, {0, 0, 0});
+    for (const std::string& ply : {box_ply(), box_binary_ply()}) {
+        const std::string none = fmt::format("element edge {}\n", ply == box_ply() ? "0" : "1979999999999999999999993");
+        expect_box(read_mesh(write("none.ply", put(ply, "element face", none))), 1.0, {0, 0, 0});
+    }
+    // A list where a number is expected is not read, of which there may be none.
+    const std::string flags = "property list uchar uchar material_index\n";
+    std::string listed = put(box_ply(), "property list", flags);
+    for (std::size_t at = listed.find("\n4 "); at != std::string::npos; at = listed.find("\n4 ", at + 1)) {
+        listed.insert(at + 1, "0 ");
+    }
+    expect_box(read_mesh(write("listed.ply", listed)), 1.0, {0, 0, 0});
     write("box.bin", box_buffer());
     // The outer node doubles what the inner has moved by 1: the box of 4 × 6 × 8 from x = 2, in metres.
     expect_box(read_mesh(write("box.gltf", box_gltf(R"("uri": "box.bin", )"))), 2000.0, {1, 0, 0});
@@ -277,6 +293,12 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     const auto with = [](std::string text, const std::string& old, const std::string& put) {
         return text.replace(text.find(old), old.size(), put);
     };
+    expect_named("float_count.ply", with(box_ply(), "list uchar", "list float"), "property list float");
+    expect_named("half_count.ply", with(box_ply(), "\n4 ", "\n4.5 "), "the face 0 is '4.5");
+    expect_named("no_number.ply", with(box_ply(), "\n4 0 ", "\n4 a "), "the face 0 is '4 a");
+    expect_named("less.ply", with(with(box_binary_ply(), "list uchar", "list char"), "\4", "\377"),
+                 "less than nothing");
+    expect_named("no_format.ply", with(box_ply(), "format ascii 1.0\n", ""));
     write("box.bin", box_buffer());
     const std::string gltf = box_gltf(R"("uri": "box.bin", )");
     expect_named("count.gltf", with(gltf, R"("count": 8)", R"("count": 4000000000)"));
