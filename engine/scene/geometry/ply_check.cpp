@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/input_error.h"
@@ -148,7 +149,12 @@ class PlyCheck {
                 header.form = form_of(words[1]);
                 header.format = fmt::format("format {} 1.0\n", words[1]);
             } else if (words[0] == "element" && words.size() == 3) {
-                header.elements.push_back(element_of(words));
+                PlyElement element = element_of(words);
+                if (std::ranges::find(header.elements, element.name, &PlyElement::name) != header.elements.end()) {
+                    // Assimp writes the second where there is room for as many as the first has.
+                    refuse(fmt::format("its header promises {} twice", element.name));
+                }
+                header.elements.push_back(std::move(element));
             } else if (words[0] == "property" && words.size() == 3 && !header.elements.empty()) {
                 add_property(header.elements.back(), {.bytes = size_of(words[1])}, words);
             } else if (words[0] == "property" && words.size() == 5 && words[1] == "list" && !header.elements.empty()) {

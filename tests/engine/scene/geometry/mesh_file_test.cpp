@@ -298,6 +298,8 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     expect_named("no_number.ply", with(box_ply(), "\n4 0 ", "\n4 a "), "the face 0 is '4 a");
     expect_named("less.ply", with(with(box_binary_ply(), "list uchar", "list char"), "\4", "\377"),
                  "less than nothing");
+    expect_named("twice.ply", with(box_ply(), "element face", "element vertex 9\nelement face"),
+                 "promises vertex twice");
     expect_named("no_format.ply", with(box_ply(), "format ascii 1.0\n", ""));
     write("box.bin", box_buffer());
     const std::string gltf = box_gltf(R"("uri": "box.bin", )");
