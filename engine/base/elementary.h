@@ -1,4 +1,4 @@
-// engine/base/elementary.h — exponentials and sines of the same bits on every machine, a GPU too.
+// engine/base/elementary.h — exponentials, sines and turns of the same bits on every machine, a GPU too.
 //
 // The libraries' own differ in their last bits from machine to machine. These are sums of products alone, which IEEE
 // 754 rounds alike everywhere (nothing is contracted: CMakeLists.txt), in the lanes of a packet too.
@@ -29,6 +29,16 @@ constexpr T factorial_series(const T& p) {
         return T(kFirst) + p * factorial_series<i + step, last, step>(p);
     } else {
         return T(kFirst);
+    }
+}
+
+/// 1/i + p/(i + 2) + p²/(i + 4) + … to the term of `last`.
+template <int i, int last, class T>
+constexpr T odd_series(const T& p) {
+    if constexpr (i < last) {
+        return T(1.0 / i) + p * odd_series<i + 2, last>(p);
+    } else {
+        return T(1.0 / i);
     }
 }
 
@@ -96,6 +106,32 @@ constexpr Vec2<T> cos_sin_within(const T& x) {
     const T across = select(is_odd, cosine, sine);
     return {select(left > half || left < -(T(Number(1)) + half), -along, along),
             select(left < -half || left > T(Number(1)) + half, -across, across)};
+}
+
+/// How far (x, y) is turned from +x towards +y, in [−1/2, 1/2] of a whole turn, within 2e-16; 0 of (0, 0). Of doubles.
+template <class T>
+constexpr T turns_of(const T& x, const T& y) {
+    constexpr double kTan16 = 0.19891236737965800691;     // of π/16
+    constexpr double kTan8 = 0.41421356237309504880;      // of π/8
+    constexpr double kTan3Of16 = 0.66817863791929891999;  // of 3π/16
+    constexpr double kTurn = 6.28318530717958647692;
+    const T zero(0.0);
+    const T across = select(x < zero, -x, x);
+    const T along = select(y < zero, -y, y);
+    const auto is_steep = along > across;
+    const T small = select(is_steep, across, along);
+    const T large = select(is_steep, along, across);
+    // From the nearest of the directions of 0, π/8 and π/4, so that few terms are left.
+    const auto is_past_first = small > T(kTan16) * large;
+    const auto is_past_second = small > T(kTan3Of16) * large;
+    const T tangent = select(is_past_second, T(1.0), select(is_past_first, T(kTan8), zero));
+    const T from = select(is_past_second, T(0.125), select(is_past_first, T(0.0625), zero));
+    const T denominator = large + tangent * small;
+    const T t = (small - tangent * large) / select(denominator > zero, denominator, T(1.0));
+    const T eighth = from + t * elementary_detail::odd_series<1, 21>(-(t * t)) * T(1.0 / kTurn);
+    const T quarter = select(is_steep, T(0.25) - eighth, eighth);
+    const T half = select(x < zero, T(0.5) - quarter, quarter);
+    return select(y < zero, -half, half);
 }
 
 /// (cos x, sin x) of any x and any number type: beyond kMostTurned, and of other types, as their library has them.

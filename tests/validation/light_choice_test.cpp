@@ -56,7 +56,7 @@ Found estimated(Row& row, int samples) {
     double squares = 0.0;
     for (int i = 0; i < samples; ++i) {
         const auto u = numbers.next();
-        const auto sample = scene.lights.sample({}, kGrid.path(i % kGrid.size()), u[0], u[1], u[2],
+        const auto sample = scene.lights.sample({}, kGrid.path(i % kGrid.size()), {u[0], {u[1], u[2]}},
                                                 [](const Vec3d& direction) { return std::max(0.0, direction.z); });
         const double light = sample ? std::max(0.0, sample->value[0] * sample->direction.z) : 0.0;
         found.mean += light / samples;

@@ -118,7 +118,7 @@ struct End {
 /// Light 0 of the scene, as the last point may sample it.
 std::optional<End> end_of(const scene::Scene& scene, const scene::SurfaceHit& last,
                           const spectral::PathWavelengths& strata, Numbers& numbers) {
-    const auto sample = scene.lights.sample(last.point, strata, numbers.next(), numbers.next(), numbers.next());
+    const auto sample = scene.lights.sample(last.point, strata, {numbers.next(), {numbers.next(), numbers.next()}});
     if (!sample || scene::is_occluded(*scene.geometry, scene::ray_origin(last, sample->direction), sample->end)) {
         return {};
     }

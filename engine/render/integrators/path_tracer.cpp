@@ -19,17 +19,17 @@ class PathWalk {
 
     [[nodiscard]] const Ray<double>& ray() const { return ray_; }
 
-    /// Asks memory for what the ray will look up, which has left the scene.
-    void look_ahead() { ahead_ = scene_->lights.expect_infinity(ray_.direction); }
+    /// The ray has left the scene, and a map shows its direction there.
+    void leave_at(const scene::MapPlace& place) { ahead_ = place; }
 
     [[nodiscard]] PathSampler& sampler() { return start_->numbers; }
     using Numbers = std::array<double, PathSampler::kNumbers>;
     /// Takes the numbers for a surface that the ray has met: the next set of its sampler's, and the one after for
-    /// lights, which it asks memory for.
-    void take_numbers(const Numbers& numbers, const Numbers& for_lights) {
+    /// lights, of which it returns where they lie.
+    scene::LightNumbers* take_numbers(const Numbers& numbers, const Numbers& for_lights) {
         numbers_ = numbers;
-        light_numbers_ = for_lights;
-        scene_->lights.expect_sample(for_lights[0], for_lights[1], for_lights[2]);
+        light_numbers_ = {for_lights[0], {for_lights[1], for_lights[2]}};
+        return &light_numbers_;
     }
 
     /// Goes on at what the ray has met. Whether the path has another ray.
@@ -150,9 +150,9 @@ class PathWalk {
     }
 
     void sample_light(const PathVertex& vertex) {
-        const auto light = scene_->lights.sample(
-            vertex.hit.point, start_->path, light_numbers_[0], light_numbers_[1], light_numbers_[2],
-            [&](const Vec3d& direction) { return vertex.scattering(direction)[0]; });
+        const auto light =
+            scene_->lights.sample(vertex.hit.point, start_->path, light_numbers_,
+                                  [&](const Vec3d& direction) { return vertex.scattering(direction)[0]; });
         if (!light) {
             return;
         }
@@ -197,15 +197,17 @@ class PathWalk {
     CameraMisWeight weight_;
     scene::MapPlace ahead_;
     Numbers numbers_{};
-    Numbers light_numbers_{};
+    scene::LightNumbers light_numbers_;
     std::optional<SampledLight> sampled_;
     PathRadiance result_;
 };
 
 /// To the walks that have met something.
-void give_numbers(std::span<PathWalk* const> walks, std::span<const std::optional<scene::SurfaceHit>> hits) {
+void give_numbers(const scene::Lights& lights, std::span<PathWalk* const> walks,
+                  std::span<const std::optional<scene::SurfaceHit>> hits) {
     constexpr std::size_t kWalks = NumberColumns::kMost / 2;
     NumberColumns columns;
+    std::array<scene::LightNumbers*, kWalks> for_lights{};
     for (std::size_t first = 0; first < walks.size(); first += kWalks) {
         const std::size_t end = std::min(walks.size(), first + kWalks);
         columns.size = 0;
@@ -216,13 +218,36 @@ void give_numbers(std::span<PathWalk* const> walks, std::span<const std::optiona
             }
         }
         number_kernels().draw(columns);
-        int column = 0;
+        std::size_t column = 0;
         for (std::size_t i = first; i < end; ++i) {
             if (hits[i]) {
                 walks[i]->sampler().skip();
-                walks[i]->take_numbers(columns.numbers(column), columns.numbers(column + 1));
+                for_lights[column / 2] = walks[i]->take_numbers(columns.numbers(column), columns.numbers(column + 1));
                 column += 2;
             }
+        }
+        lights.draw_ahead(std::span(for_lights).first(column / 2));
+    }
+}
+
+/// Of the walks that have met nothing.
+void find_in(const scene::Environment& map, std::span<PathWalk* const> walks,
+             std::span<const std::optional<scene::SurfaceHit>> hits) {
+    constexpr std::size_t kMost = 64;
+    std::array<PathWalk*, kMost> leaving{};
+    std::array<Vec3d, kMost> directions;
+    std::array<scene::MapPlace, kMost> places;
+    for (std::size_t i = 0; i < walks.size();) {
+        std::size_t count = 0;
+        for (; i < walks.size() && count < kMost; ++i) {
+            if (!hits[i]) {
+                directions[count] = walks[i]->ray().direction;
+                leaving[count++] = walks[i];
+            }
+        }
+        map.find(std::span(directions).first(count), places);
+        for (std::size_t k = 0; k < count; ++k) {
+            leaving[k]->leave_at(places[k]);
         }
     }
 }
@@ -249,12 +274,10 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
             rays.push_back(walk->ray());
         }
         scene::intersect(*scene.geometry, rays, hits);
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            if (!hits[i]) {
-                going[i]->look_ahead();
-            }
+        if (const scene::Environment* map = scene.lights.map()) {
+            find_in(*map, going, hits);
         }
-        give_numbers(going, hits);
+        give_numbers(scene.lights, going, hits);
         seeing.clear();
         ways.clear();
         std::size_t still_going = 0;
@@ -289,8 +312,6 @@ PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const
         if (hit) {
             const PathWalk::Numbers next = walk.sampler().next();
             walk.take_numbers(next, walk.sampler().peek());
-        } else {
-            walk.look_ahead();
         }
         is_going = walk.arrive(hit);
         const scene::Segment* way = walk.to_light();

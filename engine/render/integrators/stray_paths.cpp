@@ -51,7 +51,7 @@ double StrayCameraPaths::shining_on(const Ray<double>& dust, const spectral::Pat
     const scene::Scene& scene = view_.scene();
     const Ray<double> grain = film_.front().camera().to_world(dust);
     const auto u = numbers.next();
-    const auto light = scene.lights.sample(grain.origin, path, u[0], u[1], u[2]);
+    const auto light = scene.lights.sample(grain.origin, path, {u[0], {u[1], u[2]}});
     const double cosine = light ? dot(grain.direction, light->direction) : 0.0;
     if (!(cosine > 0.0) || scene::is_occluded(*scene.geometry, grain.origin, light->end)) {
         return 0.0;

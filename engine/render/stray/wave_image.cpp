@@ -92,7 +92,7 @@ void WaveImage::spread(const analysis::Psf& psf) {
 }
 
 WaveImage::Draw WaveImage::draw(double u1, double u2) const {
-    const scene::PixelDistribution::Draw drawn = distribution_.draw(u1, u2);
+    const scene::PixelDistribution::Draw drawn = distribution_.draw({u1, u2});
     const Vec2d at = static_cast<double>(kSize) * drawn.at;
     const auto row = static_cast<std::size_t>(std::min(static_cast<int>(at.y), kSize - 1));
     const auto column = static_cast<std::size_t>(std::min(static_cast<int>(at.x), kSize - 1));

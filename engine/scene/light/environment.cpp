@@ -1,14 +1,15 @@
 #include "engine/scene/light/environment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include "engine/base/angle.h"
-#include "engine/base/elementary.h"
 #include "engine/base/input_error.h"
+#include "engine/scene/light/packet/map_kernels.h"
 
 namespace lensproof::scene {
 
@@ -61,11 +62,6 @@ double sum_of(const std::vector<float>& weights, int width, const std::vector<do
     return sum;
 }
 
-/// Of the angle from the picture's poles, also near these.
-double sine_of(const Vec3d& local) {
-    return std::sqrt(local.x * local.x + local.y * local.y);
-}
-
 /// Of a density over the picture, at `sine` from the picture's poles.
 double per_solid_angle(double per_uv, double sine) {
     return sine > 0.0 ? per_uv / (2.0 * kPi * kPi * sine) : 0.0;
@@ -96,31 +92,57 @@ Environment::Environment(ImageTexture picture, const Vec3d& up, double rotate_de
     });
 }
 
-Environment::Draw Environment::draw(double u1, double u2) const {
-    const PixelDistribution::Draw drawn = places_.draw(u1, u2);
-    const Vec2d uv{drawn.at.x, 1.0 - drawn.at.y};
-    fetch(picture_, uv);
-    const auto [cosine, sine] = cos_sin_within(kPi * drawn.at.y);
-    // Counter-clockwise: to the left in the picture.
-    const auto [ahead, left] = cos_sin_within(2.0 * kPi * (0.5 - drawn.at.x));
-    return {frame_.to_world({sine * ahead, sine * left, cosine}), uv, per_solid_angle(drawn.pdf, sine)};
+MapPlace Environment::place(const Vec2d& at, double pdf) const {
+    const TexelPlace texels = place_at(picture_, {at.x, 1.0 - at.y});
+    fetch(picture_, texels);
+    return {.map = this, .texels = texels, .pdf = pdf};
 }
 
-Vec2d Environment::uv_of(const Vec3d& local) {
-    const double turn = 0.5 - std::atan2(local.y, local.x) / (2.0 * kPi);
-    return {turn - std::floor(turn), 1.0 - std::atan2(sine_of(local), local.z) / kPi};
+MapDraw Environment::draw(const Vec2d& numbers) const {
+    const PixelDistribution::Draw drawn = places_.draw(numbers);
+    const auto [direction, sine] = map_direction(drawn.at);
+    return {frame_.to_world(direction), place(drawn.at, per_solid_angle(drawn.pdf, sine))};
 }
 
-Vec2d Environment::expect(const Vec3d& direction) const {
-    const Vec2d uv = uv_of(frame_.to_local(direction));
-    fetch(picture_, uv);
-    return uv;
+MapPlace Environment::find(const Vec3d& direction) const {
+    const auto [at, sine] = map_point(frame_.to_local(direction));
+    return place(at, per_solid_angle(places_.pdf(at), sine));
 }
 
-Environment::Seen Environment::seen(const Vec3d& direction, const Vec2d& uv,
-                                    const spectral::PathWavelengths& path) const {
-    const double sine = sine_of(frame_.to_local(direction));
-    return {radiance_at(uv, path), per_solid_angle(places_.pdf({uv.x, 1.0 - uv.y}), sine)};
+void Environment::draw(std::span<const Vec2d> numbers, std::span<MapDraw> draws) const {
+    std::array<PixelDistribution::Draw, MapColumns::kMost> drawn;
+    MapColumns columns;
+    for (; !numbers.empty(); numbers = numbers.subspan(columns.size), draws = draws.subspan(columns.size)) {
+        columns.size = std::min(numbers.size(), MapColumns::kMost);
+        places_.draw(numbers.first(columns.size), drawn);
+        for (std::size_t i = 0; i < columns.size; ++i) {
+            columns.at_x[i] = drawn[i].at.x;
+            columns.at_y[i] = drawn[i].at.y;
+        }
+        map_kernels().find_directions(columns);
+        for (std::size_t i = 0; i < columns.size; ++i) {
+            draws[i] = {frame_.to_world({columns.x[i], columns.y[i], columns.z[i]}),
+                        place(drawn[i].at, per_solid_angle(drawn[i].pdf, columns.sine[i]))};
+        }
+    }
+}
+
+void Environment::find(std::span<const Vec3d> directions, std::span<MapPlace> places) const {
+    MapColumns columns;
+    for (; !directions.empty(); directions = directions.subspan(columns.size), places = places.subspan(columns.size)) {
+        columns.size = std::min(directions.size(), MapColumns::kMost);
+        for (std::size_t i = 0; i < columns.size; ++i) {
+            const Vec3d local = frame_.to_local(directions[i]);
+            columns.x[i] = local.x;
+            columns.y[i] = local.y;
+            columns.z[i] = local.z;
+        }
+        map_kernels().find_points(columns);
+        for (std::size_t i = 0; i < columns.size; ++i) {
+            const Vec2d at{columns.at_x[i], columns.at_y[i]};
+            places[i] = place(at, per_solid_angle(places_.pdf(at), columns.sine[i]));
+        }
+    }
 }
 
 }  // namespace lensproof::scene

@@ -1,7 +1,10 @@
 // engine/scene/light/environment.h — a picture of all directions, as light from infinity.
 #pragma once
+#include <span>
+
 #include "engine/base/basis.h"
 #include "engine/base/vec.h"
+#include "engine/scene/light/light_sample.h"
 #include "engine/scene/light/pixel_distribution.h"
 #include "engine/scene/spectra/texture.h"
 
@@ -17,39 +20,26 @@ class Environment {
 
     /// A direction drawn about as often as light comes from there: a cell of some pixels by its brightness and solid
     /// angle, evenly within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5). What
-    /// `radiance_at` reads of the picture at `uv` is on its way from memory.
-    struct Draw {
-        Vec3d direction;
-        Vec2d uv;          // of the picture
-        double pdf = 0.0;  // per solid angle
-    };
-    [[nodiscard]] Draw draw(double u1, double u2) const;
-    [[nodiscard]] spectral::SpectralSample radiance_at(const Vec2d& uv, const spectral::PathWavelengths& path) const {
-        return value_at(picture_, uv, path);
-    }
+    /// `radiance_at` will read of the picture is on its way from memory.
+    [[nodiscard]] MapDraw draw(const Vec2d& numbers) const;
+    /// Where the picture shows a direction, on its way from memory as above.
+    [[nodiscard]] MapPlace find(const Vec3d& direction) const;
+    /// The same of many at a time, to the bit.
+    void draw(std::span<const Vec2d> numbers, std::span<MapDraw> draws) const;
+    void find(std::span<const Vec3d> directions, std::span<MapPlace> places) const;
 
-    /// Asks memory for what `draw` will read.
-    void expect_draw(double u1, double u2) const { places_.expect(u1, u2); }
-
-    /// Where the picture shows a direction; asks memory for what `seen` will read there.
-    [[nodiscard]] Vec2d expect(const Vec3d& direction) const;
-
-    /// What comes from a direction, which the picture shows at `uv`, and the pdf with which `draw` draws it.
-    struct Seen {
-        spectral::SpectralSample radiance;
-        double pdf = 0.0;
-    };
-    [[nodiscard]] Seen seen(const Vec3d& direction, const Vec2d& uv, const spectral::PathWavelengths& path) const;
-    [[nodiscard]] Seen seen(const Vec3d& direction, const spectral::PathWavelengths& path) const {
-        return seen(direction, uv_of(frame_.to_local(direction)), path);
+    /// Of a place that this map has told.
+    [[nodiscard]] spectral::SpectralSample radiance_at(const MapPlace& place,
+                                                       const spectral::PathWavelengths& path) const {
+        return value_at(picture_, place.texels, path);
     }
 
     /// ∫ of the mean radiance over the grid and all directions, W·m⁻²·nm⁻¹.
     [[nodiscard]] double mean_power() const { return mean_power_; }
 
   private:
-    /// Of a direction in the picture's frame.
-    [[nodiscard]] static Vec2d uv_of(const Vec3d& local);
+    /// The place of a point of the picture's unit square, as PixelDistribution has it, and its pdf.
+    [[nodiscard]] MapPlace place(const Vec2d& at, double pdf) const;
 
     ImageTexture picture_;
     Basis frame_;

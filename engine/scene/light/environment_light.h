@@ -33,22 +33,22 @@ struct EnvironmentLight {
     std::shared_ptr<const Environment> map;
 
     [[nodiscard]] double irradiance() const { return map->mean_power(); }
-    [[nodiscard]] SkySample draw(const spectral::PathWavelengths& /*path*/, double u1, double u2) const {
-        const Environment::Draw drawn = map->draw(u1, u2);
-        return {drawn.direction, spectral::SpectralSample(1.0F), drawn.pdf, {map.get(), drawn.uv}};
+    [[nodiscard]] SkySample draw(const spectral::PathWavelengths& /*path*/, double u1, double u2,
+                                 const MapDraw& ahead = {}) const {
+        const MapDraw drawn = ahead.place.map == map.get() ? ahead : map->draw({u1, u2});
+        return {drawn.direction, spectral::SpectralSample(1.0F), drawn.place.pdf, drawn.place};
     }
     [[nodiscard]] SkySample seen(const Vec3d& direction, const spectral::PathWavelengths& path,
                                  const MapPlace& ahead = {}) const {
-        const Environment::Seen seen =
-            ahead.map == map.get() ? map->seen(direction, ahead.uv, path) : map->seen(direction, path);
-        return {direction, seen.radiance, seen.pdf};
+        const MapPlace place = ahead.map == map.get() ? ahead : map->find(direction);
+        return {direction, map->radiance_at(place, path), place.pdf};
     }
 };
 
 /// `value`, and as a factor what a map has at `place`.
 inline spectral::SpectralSample light_of(const spectral::SpectralSample& value, const MapPlace& place,
                                          const spectral::PathWavelengths& path) {
-    return place.map != nullptr ? value * place.map->radiance_at(place.uv, path) : value;
+    return place.map != nullptr ? value * place.map->radiance_at(place, path) : value;
 }
 
 /// Light from every direction: the same, or as a picture in equirectangular projection, whose white (1, 1, 1) has the

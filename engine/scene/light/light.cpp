@@ -157,24 +157,27 @@ Lights::Chosen Lights::choose(double u, std::span<const double> weights) const {
 }
 
 std::optional<LightSample> Lights::sample_of(const Chosen& chosen, const Vec3d& point,
-                                             const spectral::PathWavelengths& path, double u1, double u2) const {
+                                             const spectral::PathWavelengths& path, const LightNumbers& numbers) const {
     const Entry& entry = *chosen.entry;
-    std::optional<LightSample> found =
-        std::visit(Overloaded{[&](const AreaLight& area) { return entry.surface->sample(area, point, path, u1, u2); },
-                              [&](const LightAtPoint auto& light) { return sample_point(light, point, path); },
-                              [&](const LightAtInfinity auto& sky) -> std::optional<LightSample> {
-                                  const SkySample drawn = sky.draw(path, u1, u2);
-                                  if (!(drawn.pdf > 0.0)) {
-                                      return {};
-                                  }
-                                  return LightSample{.direction = drawn.direction,
-                                                     .end = point + beyond_mm(point) * drawn.direction,
-                                                     .value = scaled(drawn.radiance, 1.0 / drawn.pdf),
-                                                     .place = drawn.place,
-                                                     .pdf = drawn.pdf,
-                                                     .leaving_per_sample = crossing_pdf_};
-                              }},
-                   entry.light);
+    const double u1 = numbers.of_point.x;
+    const double u2 = numbers.of_point.y;
+    const auto of_sky = [&](const SkySample& drawn) -> std::optional<LightSample> {
+        if (!(drawn.pdf > 0.0)) {
+            return {};
+        }
+        return LightSample{.direction = drawn.direction,
+                           .end = point + beyond_mm(point) * drawn.direction,
+                           .value = scaled(drawn.radiance, 1.0 / drawn.pdf),
+                           .place = drawn.place,
+                           .pdf = drawn.pdf,
+                           .leaving_per_sample = crossing_pdf_};
+    };
+    std::optional<LightSample> found = std::visit(
+        Overloaded{[&](const AreaLight& area) { return entry.surface->sample(area, point, path, u1, u2); },
+                   [&](const LightAtPoint auto& light) { return sample_point(light, point, path); },
+                   [&](const EnvironmentLight& sky) { return of_sky(sky.draw(path, u1, u2, numbers.of_map)); },
+                   [&](const LightAtInfinity auto& sky) { return of_sky(sky.draw(path, u1, u2)); }},
+        entry.light);
     if (found) {
         found->value = scaled(found->value, 1.0 / chosen.probability);
         found->pdf *= entry.probability;
@@ -201,10 +204,23 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
             .leaving_pdf = entry.probability * area.leaving_pdf(per_mm2)};
 }
 
-void Lights::expect_sample(double u_light, double u1, double u2) const {
-    if (map_ != nullptr) {
-        if (const auto* sky = std::get_if<EnvironmentLight>(&choose(u_light).entry->light)) {
-            sky->map->expect_draw(u1, u2);
+void Lights::draw_ahead(std::span<LightNumbers* const> numbers) const {
+    constexpr std::size_t kMost = 64;
+    std::array<Vec2d, kMost> of_points;
+    std::array<LightNumbers*, kMost> of_map{};
+    std::array<MapDraw, kMost> draws;
+    for (std::size_t i = 0; map_ != nullptr && i < numbers.size();) {
+        std::size_t count = 0;
+        for (; i < numbers.size() && count < kMost; ++i) {
+            const auto* sky = std::get_if<EnvironmentLight>(&choose(numbers[i]->of_light).entry->light);
+            if (sky != nullptr && sky->map.get() == map_) {
+                of_points[count] = numbers[i]->of_point;
+                of_map[count++] = numbers[i];
+            }
+        }
+        map_->draw(std::span(of_points).first(count), draws);
+        for (std::size_t k = 0; k < count; ++k) {
+            of_map[k]->of_map = draws[k];
         }
     }
 }

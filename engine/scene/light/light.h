@@ -53,25 +53,24 @@ class Lights {
 
     /// Draws a light and a point of it as `point` sees them. Nothing where that light does not reach the point.
     [[nodiscard]] std::optional<LightSample> sample(const Vec3d& point, const spectral::PathWavelengths& path,
-                                                    double u_light, double u1, double u2) const {
-        return is_empty() ? std::nullopt : sample_of(choose(u_light), point, path, u1, u2);
+                                                    const LightNumbers& numbers) const {
+        return is_empty() ? std::nullopt : sample_of(choose(numbers.of_light), point, path, numbers);
     }
     /// The same for a point of which `passes_on` tells how much (in any unit) it passes on of light from a direction
     /// (world, unit length): what a lamp's mirror image in a wet street needs. The sample's pdfs, which only weigh
     /// it against other ways to the light, are those of a choice by power.
     template <class PassesOn>
     [[nodiscard]] std::optional<LightSample> sample(const Vec3d& point, const spectral::PathWavelengths& path,
-                                                    double u_light, double u1, double u2,
-                                                    const PassesOn& passes_on) const {
+                                                    const LightNumbers& numbers, const PassesOn& passes_on) const {
         if (lights_.size() < 2 || lights_.size() > kMostWeighed) {
-            return sample(point, path, u_light, u1, u2);
+            return sample(point, path, numbers);
         }
         std::array<double, kMostWeighed> weights{};
         for (std::size_t i = 0; i < lights_.size(); ++i) {
             const auto [direction, irradiance] = lights_[i].seen_from(point);
             weights[i] = irradiance > 0.0 ? irradiance * passes_on(direction) : 0.0;
         }
-        return sample_of(choose(u_light, std::span(weights).first(lights_.size())), point, path, u1, u2);
+        return sample_of(choose(numbers.of_light, std::span(weights).first(lights_.size())), point, path, numbers);
     }
 
     /// What a surface that a ray has met radiates towards where the ray comes from, and the pdf with which
@@ -86,15 +85,13 @@ class Lights {
     [[nodiscard]] Emission emitted(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction,
                                    const spectral::PathWavelengths& path) const;
 
-    /// Ask memory for what `sample` will read of these numbers, and for what a ray in that direction will look up if
-    /// it leaves the scene.
-    void expect_sample(double u_light, double u1, double u2) const;
-    [[nodiscard]] MapPlace expect_infinity(const Vec3d& direction) const {
-        return map_ != nullptr ? MapPlace{map_, map_->expect(direction)} : MapPlace{};
-    }
+    /// The map that rays out of the scene see; none: there is none. Of several the first.
+    [[nodiscard]] const Environment* map() const { return map_; }
+    /// Draws what these numbers draw of the map, as `sample` would, together, and while memory brings it.
+    void draw_ahead(std::span<LightNumbers* const> numbers) const;
 
     /// The same as `emitted` for a ray that leaves the scene: visits what each of the lights at infinity has in that
-    /// direction. `ahead`: what `expect_infinity` said of it.
+    /// direction. `ahead`: where the map shows it, if that is known.
     template <class Visit>
     void visit_infinity(const Vec3d& direction, const spectral::PathWavelengths& path, const Visit& visit,
                         const MapPlace& ahead = {}) const {
@@ -164,8 +161,8 @@ class Lights {
     /// being judged by its middle alone. Lights all about are drawn by power.
     [[nodiscard]] Chosen choose(double u, std::span<const double> weights) const;
     [[nodiscard]] std::optional<LightSample> sample_of(const Chosen& chosen, const Vec3d& point,
-                                                       const spectral::PathWavelengths& path, double u1,
-                                                       double u2) const;
+                                                       const spectral::PathWavelengths& path,
+                                                       const LightNumbers& numbers) const;
     [[nodiscard]] Emission at_infinity(const Entry& entry, const Vec3d& direction, const MapPlace& ahead,
                                        const spectral::PathWavelengths& path) const;
 

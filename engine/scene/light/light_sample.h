@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "engine/base/ray.h"
+#include "engine/scene/spectra/texture.h"
 #include "engine/spectral/spectral_sample.h"
 
 namespace lensproof::scene {
@@ -19,7 +20,22 @@ class Environment;
 /// sees the place, memory has brought it.
 struct MapPlace {
     const Environment* map = nullptr;  // none: there is nothing to look up
-    Vec2d uv;
+    TexelPlace texels;
+    double pdf = 0.0;  // with which the map is drawn there
+};
+
+/// A direction that was drawn of a map.
+struct MapDraw {
+    Vec3d direction;
+    MapPlace place;
+};
+
+/// What draws a light and a point of it: three numbers in [0, 1), and what they draw of a map where that is known
+/// (`Lights::draw_ahead`).
+struct LightNumbers {
+    double of_light = 0.0;
+    Vec2d of_point;
+    MapDraw of_map{};
 };
 
 /// Light that reaches a point: what next-event estimation adds, if nothing stands in the way.

@@ -82,13 +82,6 @@ std::vector<std::size_t> worth_cells(std::span<const double> whole, std::span<co
 
 }  // namespace
 
-/// The step that a number falls in, and how far into it.
-struct PixelDistribution::Found {
-    std::size_t step = 0;
-    double fraction = 0.0;  // in [0, 1)
-    double width = 0.0;
-};
-
 PixelDistribution::PixelDistribution(int width, int height, const SquaresOfRow& squares_of_row) {
     const auto blocks_over = [](int pixels, std::size_t cells) {
         return std::min((static_cast<std::size_t>(pixels) + cells - 1) / cells, kMostBlocks);
@@ -175,14 +168,29 @@ PixelDistribution::Found PixelDistribution::find(std::span<const Step> steps, do
     return {.step = step, .fraction = std::clamp((at - steps[step].before) / width, 0.0, kBelowOne), .width = width};
 }
 
-void PixelDistribution::expect(double u1, double u2) const {
-    __builtin_prefetch(&blocks_of(find(rows_, u1).step)[part_at(columns_, u2)]);
+PixelDistribution::Draw PixelDistribution::draw(const Vec2d& numbers) const {
+    return draw_in(find(rows_, numbers.x), numbers.y);
 }
 
-PixelDistribution::Draw PixelDistribution::draw(double u1, double u2) const {
-    const Found row = find(rows_, u1);
+void PixelDistribution::draw(std::span<const Vec2d> numbers, std::span<Draw> draws) const {
+    constexpr std::size_t kAhead = 16;
+    std::array<Found, kAhead> rows;
+    for (std::size_t begin = 0; begin < numbers.size(); begin += kAhead) {
+        const std::size_t end = std::min(numbers.size(), begin + kAhead);
+        for (std::size_t i = begin; i < end; ++i) {
+            Found& row = rows[i - begin];
+            row = find(rows_, numbers[i].x);
+            __builtin_prefetch(&blocks_of(row.step)[part_at(columns_, numbers[i].y)]);
+        }
+        for (std::size_t i = begin; i < end; ++i) {
+            draws[i] = draw_in(rows[i - begin], numbers[i].y);
+        }
+    }
+}
+
+PixelDistribution::Draw PixelDistribution::draw_in(const Found& row, double u) const {
     const std::span<const Step> blocks = blocks_of(row.step);
-    const Found block = find(blocks, u2);
+    const Found block = find(blocks, u);
     const Cells& sums = cells_[blocks[block.step].cells];
     const double at = kChancesABlock * block.fraction;
     const auto whole = static_cast<std::uint16_t>(at);

@@ -37,9 +37,9 @@ class PixelDistribution {
         Vec2d at;
         double pdf = 0.0;
     };
-    [[nodiscard]] Draw draw(double u1, double u2) const;
-    /// Asks memory for what `draw` will read of these numbers.
-    void expect(double u1, double u2) const;
+    [[nodiscard]] Draw draw(const Vec2d& numbers) const;
+    /// The same of many, while memory brings what the next ones will read.
+    void draw(std::span<const Vec2d> numbers, std::span<Draw> draws) const;
     [[nodiscard]] double pdf(const Vec2d& at) const;
 
   private:
@@ -55,7 +55,13 @@ class PixelDistribution {
     };
     using Cells = std::array<std::uint16_t, kCells>;  // the sum of those before each, row by row
 
-    struct Found;
+    /// The step that a number falls in, and how far into it.
+    struct Found {
+        std::size_t step = 0;
+        double fraction = 0.0;  // in [0, 1)
+        double width = 0.0;
+    };
+    [[nodiscard]] Draw draw_in(const Found& row, double u) const;
     [[nodiscard]] static std::size_t part_at(std::size_t steps, double u);
     [[nodiscard]] static Found find(std::span<const Step> steps, double u);
     [[nodiscard]] static double width_of(std::span<const Step> steps, std::size_t step);

@@ -15,15 +15,8 @@ namespace lensproof::scene {
 
 namespace {
 
-/// Two neighbouring pixels along an axis, and how far from the first to the second.
-struct Neighbours {
-    std::size_t first = 0;
-    std::size_t second = 0;
-    float fraction = 0.0F;
-};
-
 /// `at` in [0, 1] across `count` pixels.
-Neighbours neighbours(double at, int count, Wrap wrap) {
+TexelPlace::Pair neighbours(double at, int count, Wrap wrap) {
     if (!std::isfinite(at)) {
         return {};
     }
@@ -31,37 +24,39 @@ Neighbours neighbours(double at, int count, Wrap wrap) {
                           : wrap == Wrap::mirror ? std::abs(at - 2.0 * std::round(0.5 * at))
                                                  : std::clamp(at, 0.0, 1.0);
     const double pixel = inside * count - 0.5;
-    const double floor = std::floor(pixel);
+    const int first = pixel < 0.0 ? -1 : static_cast<int>(pixel);
     const auto wrapped = [&](int index) {
         const int below = wrap == Wrap::repeat ? count - 1 : 0;
         const int beyond = wrap == Wrap::repeat ? 0 : count - 1;
-        return static_cast<std::size_t>(index < 0 ? below : index >= count ? beyond : index);
+        return static_cast<std::uint32_t>(index < 0 ? below : index >= count ? beyond : index);
     };
-    const int first = static_cast<int>(floor);
-    return {.first = wrapped(first), .second = wrapped(first + 1), .fraction = static_cast<float>(pixel - floor)};
+    return {.first = wrapped(first), .second = wrapped(first + 1), .fraction = static_cast<float>(pixel - first)};
+}
+
+TexelPlace place_in(const TexelGrid& grid, const Vec2d& uv) {
+    return {.column = neighbours(uv.x, grid.width, grid.wrap_u),
+            .row = neighbours(1.0 - uv.y, grid.height, grid.wrap_v)};
+}
+
+std::size_t row_start(const TexelGrid& grid, std::uint32_t row) {
+    return std::size_t{row} * static_cast<std::size_t>(grid.width);
 }
 
 /// The mean of `value(texel index)` over the four nearest pixels, weighed bilinearly.
 template <class Value>
-auto bilinear(const TexelGrid& grid, const Vec2d& uv, const Value& value) {
-    const Neighbours x = neighbours(uv.x, grid.width, grid.wrap_u);
-    const Neighbours y = neighbours(1.0 - uv.y, grid.height, grid.wrap_v);
-    const auto row = [&](std::size_t j) {
-        const std::size_t start = j * static_cast<std::size_t>(grid.width);
-        return (1.0F - x.fraction) * value(start + x.first) + x.fraction * value(start + x.second);
+auto bilinear(const TexelGrid& grid, const TexelPlace& place, const Value& value) {
+    const auto row = [&](std::uint32_t j) {
+        const std::size_t start = row_start(grid, j);
+        const auto& [first, second, fraction] = place.column;
+        return (1.0F - fraction) * value(start + first) + fraction * value(start + second);
     };
-    return (1.0F - y.fraction) * row(y.first) + y.fraction * row(y.second);
+    return (1.0F - place.row.fraction) * row(place.row.first) + place.row.fraction * row(place.row.second);
 }
 
 /// But for the picture's white.
 [[gnu::always_inline]] inline spectral::SpectralSample value_of(const ImageTexture::Texel& texel,
                                                                 const spectral::SpectralSample& abscissa) {
     return texel.scale * spectral::for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
-}
-
-/// `uv` of a surface in the picture that covers it `repeats` times.
-Vec2d repeated(const ImageTexture& image, const Vec2d& uv) {
-    return {image.repeats.x * uv.x, image.repeats.y * uv.y};
 }
 
 spectral::SpectralSample value_at(const spectral::GridSpectrum& spectrum, const Vec2d&,
@@ -113,30 +108,34 @@ ImageTexture image_texture(const formats::Image& image, const std::filesystem::p
 
 }  // namespace
 
-spectral::SpectralSample value_at(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path) {
-    const spectral::SpectralSample abscissa = image.abscissa(path);
-    const spectral::SpectralSample value = bilinear(
-        image.grid, repeated(image, uv), [&](std::size_t index) { return value_of(image.texel[index], abscissa); });
-    return value * image.white(path);
+TexelPlace place_at(const ImageTexture& image, const Vec2d& uv) {
+    return place_in(image.grid, {image.repeats.x * uv.x, image.repeats.y * uv.y});
 }
 
-void fetch(const ImageTexture& image, const Vec2d& uv) {
-    const Vec2d at = repeated(image, uv);
-    const Neighbours x = neighbours(at.x, image.grid.width, image.grid.wrap_u);
-    const Neighbours y = neighbours(1.0 - at.y, image.grid.height, image.grid.wrap_v);
-    for (const std::size_t row : {y.first, y.second}) {
-        const ImageTexture::Texel* start = image.texel.data() + row * static_cast<std::size_t>(image.grid.width);
-        __builtin_prefetch(start + x.first);
-        __builtin_prefetch(start + x.second);
+void fetch(const ImageTexture& image, const TexelPlace& place) {
+    for (const std::uint32_t row : {place.row.first, place.row.second}) {
+        const ImageTexture::Texel* start = image.texel.data() + row_start(image.grid, row);
+        __builtin_prefetch(start + place.column.first);
+        __builtin_prefetch(start + place.column.second);
     }
 }
 
+spectral::SpectralSample value_at(const ImageTexture& image, const TexelPlace& place,
+                                  const spectral::PathWavelengths& path) {
+    const spectral::SpectralSample abscissa = image.abscissa(path);
+    const spectral::SpectralSample value =
+        bilinear(image.grid, place, [&](std::size_t index) { return value_of(image.texel[index], abscissa); });
+    return value * image.white(path);
+}
+
+spectral::SpectralSample value_at(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path) {
+    return value_at(image, place_at(image, uv), path);
+}
+
 std::size_t nearest_texel(const ImageTexture& image, const Vec2d& uv) {
-    const Vec2d at = repeated(image, uv);
-    const auto nearer = [](const Neighbours& n) { return n.fraction < 0.5F ? n.first : n.second; };
-    return nearer(neighbours(1.0 - at.y, image.grid.height, image.grid.wrap_v)) *
-               static_cast<std::size_t>(image.grid.width) +
-           nearer(neighbours(at.x, image.grid.width, image.grid.wrap_u));
+    const auto nearer = [](const TexelPlace::Pair& pair) { return pair.fraction < 0.5F ? pair.first : pair.second; };
+    const TexelPlace place = place_at(image, uv);
+    return row_start(image.grid, nearer(place.row)) + nearer(place.column);
 }
 
 std::vector<float> mean_over_grid(const ImageTexture& image) {
@@ -161,7 +160,7 @@ spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const
 }
 
 float value_at(const NumberTexture& numbers, const Vec2d& uv) {
-    return bilinear(numbers.grid, uv, [&](std::size_t index) { return numbers.value[index]; });
+    return bilinear(numbers.grid, place_in(numbers.grid, uv), [&](std::size_t index) { return numbers.value[index]; });
 }
 
 ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file,

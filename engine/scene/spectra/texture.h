@@ -3,6 +3,7 @@
 // (u, v) covers a texture once from 0 to 1: u runs to the right and v up, so that (0, 1) is a picture's top left
 // corner.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <utility>
 #include <variant>
@@ -26,6 +27,19 @@ struct TexelGrid {
     int height = 0;
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
+};
+
+/// Where a look-up falls between pixels' centres: the nearest columns and rows, counted from the top left.
+struct TexelPlace {
+    struct Pair {
+        std::uint32_t first = 0;
+        std::uint32_t second = 0;
+        float fraction = 0.0F;  // of the way from the first to the second
+        friend bool operator==(const Pair&, const Pair&) = default;
+    };
+    Pair column;
+    Pair row;
+    friend bool operator==(const TexelPlace&, const TexelPlace&) = default;
 };
 
 /// A picture whose pixels are spectra: `scale` · `shape` · `white`; between pixels bilinear, wavelength by wavelength.
@@ -78,8 +92,11 @@ class Texture {
 spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const spectral::PathWavelengths& path);
 spectral::SpectralSample value_at(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path);
 
-/// Asks memory for what `value_at` will read.
-void fetch(const ImageTexture& image, const Vec2d& uv);
+/// The same in two steps, of which the first only finds what the second reads, and may ask memory for it.
+TexelPlace place_at(const ImageTexture& image, const Vec2d& uv);
+void fetch(const ImageTexture& image, const TexelPlace& place);
+spectral::SpectralSample value_at(const ImageTexture& image, const TexelPlace& place,
+                                  const spectral::PathWavelengths& path);
 
 /// The index of the pixel that is nearest.
 std::size_t nearest_texel(const ImageTexture& image, const Vec2d& uv);

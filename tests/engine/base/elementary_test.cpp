@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace lensproof::elementary_test {
@@ -85,6 +86,27 @@ TEST(Elementary, TurnsAreWithinAnUlpOfOne) {
         EXPECT_EQ(cos_sin(x), (Vec2d{1.0, x}));
     }
     EXPECT_EQ(cos_sin(1e9), (Vec2d{std::cos(1e9), std::sin(1e9)}));  // beyond what is reduced here
+}
+
+// All quadrants, from directions near the axes and the eighths that it counts from to any.
+TEST(Elementary, TurnsOfDirectionsAreWithinAnUlpOfOne) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> all(-1.0, 1.0);
+    double worst = 0.0;
+    for (int i = 0; i < 400000; ++i) {
+        const double near = std::round(16.0 * all(random)) / 16.0 + std::pow(10.0, -16.0 * std::abs(all(random)));
+        const double turns = i % 2 == 0 ? all(random) : near;
+        const double scale = std::pow(10.0, 100.0 * all(random));
+        const double x = scale * std::cos(2.0 * std::numbers::pi * turns);
+        const double y = scale * std::sin(2.0 * std::numbers::pi * turns);
+        const long double exact = std::atan2(static_cast<long double>(y), static_cast<long double>(x)) /
+                                  (2.0L * std::numbers::pi_v<long double>);
+        worst = std::max(worst, static_cast<double>(std::abs(static_cast<long double>(turns_of(x, y)) - exact)));
+    }
+    EXPECT_LT(worst, std::numeric_limits<double>::epsilon());
+    EXPECT_EQ(turns_of(0.0, 0.0), 0.0);
+    EXPECT_EQ(turns_of(-1.0, 0.0), 0.5);
+    EXPECT_EQ(turns_of(0.0, -1.0), -0.25);
 }
 
 }  // namespace lensproof::elementary_test

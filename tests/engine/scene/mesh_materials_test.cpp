@@ -176,7 +176,7 @@ TEST_F(MeshMaterialsTest, PicturesShine) {
         for (int j = 0; j < kSide; ++j) {
             const double u = (i + 0.5) / kSide;
             const double v = (j + 0.5) / kSide;
-            if (const auto light = made.scene.lights.sample(point, grid().path(8), 0.5, u, v)) {
+            if (const auto light = made.scene.lights.sample(point, grid().path(8), {0.5, {u, v}})) {
                 sampled += light->value[0] * -light->direction.z / (kSide * kSide);
             }
             const Vec3d along = Vec3d{1000.0 * u, 1000.0 * v, 0.0} - point;

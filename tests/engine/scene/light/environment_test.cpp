@@ -5,9 +5,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "engine/base/input_error.h"
 #include "engine/render/sampling/sampler.h"
+#include "engine/scene/light/packet/map_kernels.h"
 
 namespace lensproof::scene::environment_test {
 
@@ -34,7 +37,7 @@ TEST(Environment, StandsAsItSays) {
     const auto seen = [&](const Environment& sky, double azimuth_deg, double height_deg) {
         const double a = azimuth_deg * kPi / 180.0;
         const double h = height_deg * kPi / 180.0;
-        return sky.seen({std::cos(h) * std::cos(a), std::cos(h) * std::sin(a), std::sin(h)}, path).radiance[0];
+        return sky.radiance_at(sky.find({std::cos(h) * std::cos(a), std::cos(h) * std::sin(a), std::sin(h)}), path)[0];
     };
     const Environment sky(picture, {0.0, 0.0, 1.0}, 0.0);
     // The pixels' centres: 45° to either side of the middle and of the edge, 45° up and down.
@@ -81,15 +84,17 @@ TEST(Environment, DrawsWithItsDensity) {
     const render::PixelSampler sampler(1, 0);
     for (int i = 0; i < kDraws; ++i) {
         const auto u = sampler.point(static_cast<std::uint32_t>(i));
-        const Environment::Draw draw = sky.draw(u[0], u[1]);
-        const Environment::Seen seen = sky.seen(draw.direction, path);
-        const double radiance = sky.radiance_at(draw.uv, path)[0];
-        ASSERT_NEAR(seen.pdf, draw.pdf, 1e-6 * draw.pdf);
-        ASSERT_NEAR(seen.radiance[0], radiance, 2e-4);
-        all += radiance / draw.pdf / kDraws;
-        from_above += radiance / draw.pdf / kDraws * std::max(0.0, draw.direction.z);
+        const MapDraw draw = sky.draw({u[0], u[1]});
+        const MapPlace seen = sky.find(draw.direction);
+        const double radiance = sky.radiance_at(draw.place, path)[0];
+        ASSERT_NEAR(seen.pdf, draw.place.pdf, 1e-6 * draw.place.pdf);
+        ASSERT_NEAR(sky.radiance_at(seen, path)[0], radiance, 2e-4);
+        all += radiance / draw.place.pdf / kDraws;
+        from_above += radiance / draw.place.pdf / kDraws * std::max(0.0, draw.direction.z);
     }
-    const auto radiance = [&](const Vec3d& direction) -> double { return sky.seen(direction, path).radiance[0]; };
+    const auto radiance = [&](const Vec3d& direction) -> double {
+        return sky.radiance_at(sky.find(direction), path)[0];
+    };
     const double expected = over_all_directions(radiance);
     const double expected_above =
         over_all_directions([&](const Vec3d& to) { return radiance(to) * std::max(0.0, to.z); });
@@ -101,8 +106,58 @@ TEST(Environment, DrawsWithItsDensity) {
 // the sum's own sin takes away; and the sum's cells fill pixels whole.
 TEST(Environment, PdfsIntegrateToOne) {
     const Environment sky(sky_with_sun(), {0.0, 0.0, 1.0}, 0.0);
-    const spectral::PathWavelengths path = kGrid.path(0);
-    EXPECT_NEAR(over_all_directions([&](const Vec3d& to) { return sky.seen(to, path).pdf; }), 1.0, 1e-9);
+    EXPECT_NEAR(over_all_directions([&](const Vec3d& to) { return sky.find(to).pdf; }), 1.0, 1e-9);
+}
+
+// Whatever the number of them, and the width of packets.
+TEST(Environment, DrawsAndFindsManyAsOne) {
+    const Environment sky(sky_with_sun(), normalized(Vec3d{0.3, -0.2, 1.0}), 20.0);
+    constexpr std::size_t kMost = 150;
+    std::vector<Vec2d> numbers;
+    std::vector<Vec3d> directions = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {-1, 0, 0}};
+    const render::PixelSampler sampler(1, 0);
+    for (std::uint32_t i = 0; i < kMost; ++i) {
+        const auto u = sampler.point(i);
+        numbers.push_back({u[0], u[1]});
+        directions.push_back(sky.draw({u[1], u[0]}).direction);
+    }
+    const auto expect_same = [](const MapPlace& a, const MapPlace& b) {
+        EXPECT_EQ(a.map, b.map);
+        EXPECT_EQ(a.texels, b.texels);
+        EXPECT_EQ(a.pdf, b.pdf);
+    };
+    std::vector<MapDraw> draws(kMost);
+    std::vector<MapPlace> places(directions.size());
+    for (const std::size_t count : {std::size_t{1}, std::size_t{63}, std::size_t{65}, kMost}) {
+        sky.draw(std::span(numbers).first(count), draws);
+        sky.find(std::span(directions).first(count), places);
+        for (std::size_t i = 0; i < count; ++i) {
+            expect_same(places[i], sky.find(directions[i]));
+            expect_same(draws[i].place, sky.draw(numbers[i]).place);
+            EXPECT_EQ(draws[i].direction, sky.draw(numbers[i]).direction);
+        }
+    }
+    for (const SimdLevel level : available_simd_levels()) {
+        MapColumns columns;
+        columns.size = 61;
+        for (std::size_t i = 0; i < columns.size; ++i) {
+            columns.x[i] = directions[i].x;
+            columns.y[i] = directions[i].y;
+            columns.z[i] = directions[i].z;
+        }
+        map_kernels(level).find_points(columns);
+        for (std::size_t i = 0; i < columns.size; ++i) {
+            const MapPoint<double> point = map_point(directions[i]);
+            EXPECT_EQ(point.at, (Vec2d{columns.at_x[i], columns.at_y[i]}));
+            EXPECT_EQ(point.sine, columns.sine[i]);
+        }
+        map_kernels(level).find_directions(columns);
+        for (std::size_t i = 0; i < columns.size; ++i) {
+            const MapDirection<double> of_point = map_direction(Vec2d{columns.at_x[i], columns.at_y[i]});
+            EXPECT_EQ(of_point.direction, (Vec3d{columns.x[i], columns.y[i], columns.z[i]}));
+            EXPECT_LT(length(of_point.direction - directions[i]), 4e-15);  // back: 2e-16 of a turn
+        }
+    }
 }
 
 TEST(Environment, RefusesABlackPicture) {

@@ -90,7 +90,7 @@ TEST(PixelDistribution, DrawsWithItsDensity) {
     std::vector<double> found(std::size_t{kWidth} * kHeight);
     for (int i = 0; i < kSteps; ++i) {
         for (int k = 0; k < kSteps; ++k) {
-            const PixelDistribution::Draw draw = places.draw((i + 0.5) / kSteps, (k + 0.5) / kSteps);
+            const PixelDistribution::Draw draw = places.draw({(i + 0.5) / kSteps, (k + 0.5) / kSteps});
             ASSERT_GT(draw.pdf, 0.0);
             ASSERT_DOUBLE_EQ(places.pdf(draw.at), draw.pdf);
             found[static_cast<std::size_t>(draw.at.y * kHeight) * kWidth +
@@ -127,7 +127,7 @@ TEST(PixelDistribution, ABrightPixelOfALargePictureHasACell) {
     const double probability = 4.0 * places.pdf(centre(1234, 700, kWide, kHigh)) / kWide / kHigh;
     EXPECT_NEAR(probability, bright / all, 34 * 0x1p-16);
     EXPECT_GT(places.pdf(centre(1, 1, kWide, kHigh)), 0.0);
-    const PixelDistribution::Draw draw = places.draw(0.5, 0.5);
+    const PixelDistribution::Draw draw = places.draw({0.5, 0.5});
     EXPECT_NEAR(draw.at.x * kWide, 1235, 1.0);
     EXPECT_NEAR(draw.at.y * kHigh, 701, 1.0);
 }
@@ -139,7 +139,7 @@ TEST(PixelDistribution, EndsAreInside) {
             distribution_of(width, height, std::vector<double>(index_of(0, height, width), 0.3));
         for (const double u : {0.0, 0x1p-53, 0.5, 1.0 - 0x1p-53}) {
             for (const double v : {0.0, 0x1p-53, 0.5, 1.0 - 0x1p-53}) {
-                const PixelDistribution::Draw draw = places.draw(u, v);
+                const PixelDistribution::Draw draw = places.draw({u, v});
                 EXPECT_GE(std::min(draw.at.x, draw.at.y), 0.0);
                 EXPECT_LE(std::max(draw.at.x, draw.at.y), 1.0);
                 EXPECT_NEAR(draw.pdf, 1.0, 33 * 0x1p-16 * 32);  // of a cell, which has 2¹⁶ / 32 chances

@@ -29,7 +29,7 @@ double at(Wrap wrap, double u, double v) {
     for (const float grey : {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F}) {
         image.texel.push_back({.shape = {}, .scale = 2.0F * grey});  // of a shape that is ½ everywhere
     }
-    return value_at(image, {u, v}, grid().path(0))[0];
+    return value_at(image, Vec2d{u, v}, grid().path(0))[0];
 }
 
 constexpr double kFloatRounding = 0x1p-23;
