@@ -1,5 +1,6 @@
 #include "engine/scene/geometry/mesh_file.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
@@ -11,9 +12,12 @@
 #include <assimp/Importer.hpp>
 #include <charconv>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -26,6 +30,7 @@
 #include "engine/scene/geometry/gltf_check.h"
 #include "engine/scene/geometry/mesh_material.h"
 #include "engine/scene/geometry/mesh_normals.h"
+#include "engine/scene/geometry/obj_check.h"
 #include "engine/scene/geometry/ply_check.h"
 
 namespace lensproof::scene {
@@ -193,8 +198,9 @@ bool has_empty_faces(const aiScene& scene) {
 /// The files that Assimp opens, or tries to: a mesh's own, and those that it names, materials and buffers.
 class RegularFiles : public Assimp::DefaultIOSystem {
   public:
-    /// `instead`: what `file` reads as, if it is not empty; outlives it.
-    RegularFiles(const std::filesystem::path& file, const std::string& instead) : file_(file), instead_(instead) {}
+    /// `instead`: what `file` reads as, if that is not what it holds; outlives it.
+    RegularFiles(const std::filesystem::path& file, const std::optional<std::string>& instead)
+        : file_(file), instead_(instead) {}
 
     /// The first that is a device or a pipe; none is opened.
     [[nodiscard]] const std::filesystem::path& refused() const { return refused_; }
@@ -204,8 +210,9 @@ class RegularFiles : public Assimp::DefaultIOSystem {
     }
 
     Assimp::IOStream* Open(const char* file, const char* mode) override {
-        if (!instead_.empty() && file_ == file) {
-            return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(instead_.data()), instead_.size());
+        if (instead_ && file_ == file) {
+            return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(instead_->data()),
+                                              instead_->size());
         }
         return is_regular(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
     }
@@ -223,17 +230,34 @@ class RegularFiles : public Assimp::DefaultIOSystem {
     }
 
     std::filesystem::path file_;
-    const std::string& instead_;
+    const std::optional<std::string>& instead_;
     mutable std::filesystem::path refused_;
 };
 
-const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file, const std::string& instead) {
+/// Leaves the importer the one reader of such files: where that makes nothing of a file, Assimp would ask all others,
+/// of which any may find something in it that it takes for its own kind.
+void keep_reader(Assimp::Importer& importer, const std::string& extension) {
+    for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+        const aiImporterDesc& reader = *importer.GetImporterInfo(i);
+        const std::vector<std::string_view> extensions = words_of(reader.mFileExtensions);
+        const bool is_known = std::ranges::find(extensions, extension.substr(1)) != extensions.end();
+        const bool is_version_1 = is_known && extension.starts_with(".gl") && !std::strchr(reader.mName, '2');
+        if (!is_known || is_version_1) {
+            const std::unique_ptr<Assimp::BaseImporter> unused(importer.GetImporter(i));
+            importer.UnregisterLoader(unused.get());
+        }
+    }
+}
+
+const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file,
+                          const std::optional<std::string>& instead) {
     const auto refuse = [&](std::string_view reason) {
         throw InputError(fmt::format("{}: cannot be read as {}: {}", file.string(), lower_extension(file).substr(1),
                                      printable(trimmed(reason))));
     };
     auto* files = new RegularFiles(file, instead);
     importer.SetIOHandler(files);  // which it then owns
+    keep_reader(importer, lower_extension(file));
     const aiScene* scene = nullptr;
     try {
         if (is_gltf(file)) {
@@ -309,9 +333,17 @@ MeshFile read_mesh_here(const std::filesystem::path& file, const MeshOptions& op
     const bool by_material = options.by_material && is_gltf(file);
     const std::vector<MeshMaterial> materials =
         by_material ? read_gltf_materials(file).materials : std::vector<MeshMaterial>();
-    const std::string instead = by_material           ? gltf_with_numbered_materials(file)
-                                : extension == ".ply" ? checked_ply(read_file(file), file)
-                                                      : std::string();
+    std::optional<std::string> instead;
+    std::size_t lines_and_points = 0;
+    if (extension == ".obj") {
+        CheckedObj obj = checked_obj(read_file(file), file);
+        instead = std::move(obj.text);
+        lines_and_points = obj.lines_and_points;
+    } else if (extension == ".ply") {
+        instead = checked_ply(read_file(file), file);
+    } else if (by_material) {
+        instead = gltf_with_numbered_materials(file);
+    }
     Assimp::Importer importer;
     const aiScene& scene = read_scene(importer, file, instead);
     Collector collector(scene, options, materials, file.string());
@@ -327,7 +359,7 @@ MeshFile read_mesh_here(const std::filesystem::path& file, const MeshOptions& op
     }
     MeshFile read{.mesh = {.name = file.string()},
                   .parts = {},
-                  .remarks = ignored(file.string(), scene, options, collector.lines_and_points())};
+                  .remarks = ignored(file.string(), scene, options, lines_and_points + collector.lines_and_points())};
     for (auto& [material, mesh] : meshes) {
         if (options.by_material) {
             read.parts.push_back({std::move(mesh), material});
