@@ -19,9 +19,10 @@ namespace {
 
 constexpr std::uint32_t kHasParts = 0x1000;  // of the version field
 constexpr const char* kCutOff = "it states more than there is of it, as if it were cut off";
-constexpr std::streamoff kBytesOfChannel = 16;  // the first four: of which type its pixels are
-constexpr std::uint32_t kPixelTypes = 3;        // whole numbers, halves, floats
-constexpr std::size_t kLongestName = 255;       // of attributes and of their types
+constexpr std::streamoff kBytesOfChannel = 16;        // the first four: of which type its pixels are
+constexpr std::size_t kLongestName = 255;             // of attributes and of their types
+constexpr std::array kBytesOfType = {4.0, 2.0, 4.0};  // of pixels: whole numbers, halves, floats
+constexpr double kMostChunkMib = 512.0;
 constexpr std::array kLinesOfChunk = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};  // by compression
 
 /// Types of attributes whose values always take these bytes: OpenEXR's library reads as many, whatever size is stated,
@@ -69,6 +70,10 @@ class ExrHeaders {
             if (unknown_type_) {
                 return fmt::format("a channel has pixels of type {}, expected 0, 1 or 2", *unknown_type_);
             }
+            if (chunk_mib_ > kMostChunkMib) {
+                return fmt::format("a chunk of its pixels takes {:.0f} MiB, expected at most {}", chunk_mib_,
+                                   kMostChunkMib);
+            }
             if (8.0 * chunks > size_) {
                 return kCutOff;
             }
@@ -107,9 +112,10 @@ class ExrHeaders {
             for (std::string channel = name(); !channel.empty() && length < size; channel = name()) {
                 length += static_cast<double>(channel.size()) + 1 + kBytesOfChannel;
                 const auto pixels = number<std::uint32_t>();
-                if (pixels && *pixels >= kPixelTypes) {
+                if (pixels && *pixels >= kBytesOfType.size()) {
                     unknown_type_ = pixels;
                 }
+                pixel_bytes_ += pixels && !unknown_type_ ? kBytesOfType.at(*pixels) : 0.0;
                 stream_.seekg(kBytesOfChannel - std::streamoff{sizeof(std::uint32_t)}, std::ios::cur);
             }
             return length + 1;
@@ -138,6 +144,7 @@ class ExrHeaders {
         double stated = 0.0;
         double tile_area = 0.0;
         bool is_empty = true;
+        pixel_bytes_ = 0.0;
         for (std::string attribute = name(); !attribute.empty(); attribute = name()) {
             is_empty = false;
             const std::string type = name();
@@ -171,6 +178,7 @@ class ExrHeaders {
         if (is_empty) {
             return 0.0;
         }
+        chunk_mib_ = pixel_bytes_ * (tile_area > 0.0 ? tile_area : width * lines) / 0x1p20;
         const double counted = tile_area > 0.0 ? width * height / tile_area : height / lines;
         return std::max({1.0, stated, counted});
     }
@@ -178,6 +186,8 @@ class ExrHeaders {
     std::ifstream stream_;
     double size_;
     std::optional<std::uint32_t> unknown_type_;
+    double pixel_bytes_ = 0.0;  // of a part's channels
+    double chunk_mib_ = 0.0;    // of the last part
 };
 
 }  // namespace

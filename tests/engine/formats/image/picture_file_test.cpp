@@ -212,6 +212,16 @@ TEST(PictureFile, HasPixelsOfATypeThatThereIs) {
     EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "a channel has pixels of type 3, expected 0, 1 or 2"));
 }
 
+// OpenEXR makes room for a chunk when it opens a part, of whatever width that states.
+TEST(PictureFile, HasChunksThatOneMayMakeRoomFor) {
+    const TestFolder folder;
+    std::string bytes = bytes_of_form(folder, ".exr");
+    const std::string window("dataWindow\0box2i\0\x10\0\0\0", 21);
+    bytes.replace(bytes.find(window) + window.size() + 8, 4, std::string("\xFF\xFF\xFF\x0F", 4));  // its right edge
+    const auto file = named(folder, "a.exr", bytes);
+    EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "MiB, expected at most 512"));
+}
+
 // No limit is beyond the machine; a 32 × 32 picture is within every one.
 TEST(PictureFile, KnowsHowMuchMemoryThereIs) {
     EXPECT_GT(memory_bytes(), 64.0 * 1024 * 1024);
