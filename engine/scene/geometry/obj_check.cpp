@@ -12,6 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/base/visible.h"
+#include "engine/scene/geometry/plain_number.h"
 
 namespace lensproof::scene {
 
@@ -96,10 +97,12 @@ class ObjCheck {
         }
         std::string numbers;
         for (std::size_t i = 0; i < written; ++i) {
-            if (i < values.size() && !parse_number(values[i])) {
+            const std::string_view word = i < values.size() ? values[i] : "0";
+            const std::optional<double> number = parse_number(word);
+            if (!number) {
                 refuse_line();
             }
-            numbers.append(i > 0 ? " " : "").append(i < values.size() ? values[i] : "0");
+            numbers.append(i > 0 ? " " : "").append(plain_number(word, *number));
         }
         add_line(keyword, numbers);
         ++count_[kind];

@@ -13,6 +13,7 @@
 
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
+#include "engine/scene/geometry/plain_number.h"
 
 namespace lensproof::scene {
 
@@ -24,6 +25,7 @@ struct PlyProperty {
     int bytes = 0;        // of a value
     int count_bytes = 0;  // of the number before a list's values; 0 where there is one value
     bool is_count_signed = false;
+    bool is_whole = false;  // a value
 };
 
 struct PlyElement {
@@ -102,6 +104,8 @@ class PlyCheck {
         return found->second;
     }
 
+    static bool is_float(std::string_view type) { return type.starts_with("float") || type.starts_with("double"); }
+
     PlyForm form_of(std::string_view word) const {
         if (word == "ascii") {
             return PlyForm::ascii;
@@ -156,15 +160,17 @@ class PlyCheck {
                 }
                 header.elements.push_back(std::move(element));
             } else if (words[0] == "property" && words.size() == 3 && !header.elements.empty()) {
-                add_property(header.elements.back(), {.bytes = size_of(words[1])}, words);
+                add_property(header.elements.back(), {.bytes = size_of(words[1]), .is_whole = !is_float(words[1])},
+                             words);
             } else if (words[0] == "property" && words.size() == 5 && words[1] == "list" && !header.elements.empty()) {
-                if (words[2].starts_with("float") || words[2] == "double") {
+                if (is_float(words[2])) {
                     refuse(fmt::format("its header says '{}'", printable(*line)));
                 }
                 add_property(header.elements.back(),
                              {.bytes = size_of(words[3]),
                               .count_bytes = size_of(words[2]),
-                              .is_count_signed = !words[2].starts_with('u')},
+                              .is_count_signed = !words[2].starts_with('u'),
+                              .is_whole = !is_float(words[3])},
                              words);
             } else {
                 refuse(fmt::format("its header says '{}'", printable(*line)));
@@ -186,25 +192,30 @@ class PlyCheck {
                 refuse_end(element, i);
             }
             const std::vector<std::string_view> words = words_of(*line);
+            const auto refuse_line = [&] {
+                refuse(fmt::format("the {} {} is '{}'", element.name, i, printable(*line)));
+            };
             std::size_t at = 0;
-            const auto take_number = [&] {
-                const auto number = at < words.size() ? parse_number(words[at++]) : std::nullopt;
-                if (!number) {
-                    refuse(fmt::format("the {} {} is '{}'", element.name, i, printable(*line)));
+            const auto take_number = [&](bool is_whole) {
+                const std::string_view word = at < words.size() ? words[at] : "";
+                const std::optional<double> number = parse_number(word);
+                if (!number || (is_whole && (*number != std::floor(*number) || std::abs(*number) > kLargestWhole))) {
+                    refuse_line();
                 }
+                lines += at++ > 0 ? " " : "";
+                lines += is_whole ? fmt::format("{:.0f}", *number) : plain_number(word, *number);
                 return *number;
             };
             for (const PlyProperty& property : element.properties) {
-                const double count = property.count_bytes > 0 ? take_number() : 1.0;
-                if (!(count >= 0.0) || count != std::floor(count)) {
-                    refuse(fmt::format("the {} {} is '{}'", element.name, i, printable(*line)));
+                const double count = property.count_bytes > 0 ? take_number(true) : 1.0;
+                if (count < 0.0) {
+                    refuse_line();
                 }
                 for (double k = 0; k < count; ++k) {
-                    take_number();
+                    take_number(property.is_whole);
                 }
             }
-            lines +=
-                fmt::format("{}\n", fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(at), " "));
+            lines += '\n';
         }
         return lines;
     }
@@ -238,6 +249,8 @@ class PlyCheck {
         }
         return before.substr(0, before.size() - rest_.size());
     }
+
+    static constexpr double kLargestWhole = 4294967295.0;  // of 32 bits
 
     static std::size_t whole_number(std::string_view bytes, PlyForm form) {
         std::size_t value = 0;

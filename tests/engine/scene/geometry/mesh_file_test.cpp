@@ -184,6 +184,7 @@ TEST_F(MeshFileTest, EveryFormHoldsTheSameBox) {
                                     {"coloured", for_each(kBoxObj, "v 2 3 4", "v 2 3 4 0.5 0.5 0.5")},
                                     {"on", for_each(kBoxObj, "f 2 3 ", "f 2 \\\n3 ")},
                                     {"returns", for_each(kBoxObj, "\n", "\r\n")},
+                                    {"digits", for_each(kBoxObj, "v 2 3 4", "v 2.0000000000000000000000000000 3 4")},
                                     {"lines", kBoxObj + "l 1/1/1 2/2/1 3\nl 1 2 3 4 5\np 1\nf 1 2\n"},
                                     {"half", for_each(kBoxObj, "6/2/1 7/3/1 8/4/1", "6//1 7/3/1 8/4")}}) {
         expect_box(read_mesh(write(std::string(name) + ".obj", obj)), 1.0, {0, 0, 0});
@@ -209,6 +210,9 @@ TEST_F(MeshFileTest, EveryFormHoldsTheSameBox) {
         const std::string none = fmt::format("element edge {}\n", ply == box_ply() ? "0" : "1979999999999999999999993");
         expect_box(read_mesh(write("none.ply", put(ply, "element face", none))), 1.0, {0, 0, 0});
     }
+    // Digits without end, and whole numbers that are written as others.
+    const std::string digits = for_each(box_ply(), "\n2 3 4\n", "\n2 00000000000000000000000000000003 4\n");
+    expect_box(read_mesh(write("digits.ply", for_each(digits, "\n4 0 3 ", "\n4.0 0e0 3e0 "))), 1.0, {0, 0, 0});
     // A list where a number is expected is not read, of which there may be none.
     const std::string flags = "property list uchar uchar material_index\n";
     std::string listed = put(box_ply(), "property list", flags);
@@ -323,6 +327,7 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     };
     expect_named("float_count.ply", with(box_ply(), "list uchar", "list float"), "property list float");
     expect_named("half_count.ply", with(box_ply(), "\n4 ", "\n4.5 "), "the face 0 is '4.5");
+    expect_named("half_corner.ply", with(box_ply(), "\n4 0 ", "\n4 0.5 "), "the face 0 is '4 0.5");
     expect_named("no_number.ply", with(box_ply(), "\n4 0 ", "\n4 a "), "the face 0 is '4 a");
     expect_named("less.ply", with(with(box_binary_ply(), "list uchar", "list char"), "\4", "\377"),
                  "less than nothing");
