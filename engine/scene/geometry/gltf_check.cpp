@@ -9,6 +9,7 @@
 
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
+#include "engine/base/text.h"
 #include "engine/scene/geometry/gltf_document.h"
 
 namespace lensproof::scene {
@@ -128,7 +129,15 @@ class NodeTree {
 }  // namespace
 
 void check_gltf(const std::filesystem::path& file) {
-    NodeTree(gltf_json(file), file.string()).check();
+    const Json top = gltf_json(file);
+    NodeTree(top, file.string()).check();
+    for (const Json& buffer : top["buffers"]) {
+        // Assimp looks for what follows this mark also where nothing does.
+        if (const Json& uri = buffer["uri"]; uri.is_text() && uri.text().find("://") != std::string::npos) {
+            throw InputError(
+                fmt::format("{}: names {}, expected a file beside it", file.string(), printable(uri.text())));
+        }
+    }
 }
 
 }  // namespace lensproof::scene

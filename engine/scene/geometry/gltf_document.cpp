@@ -66,7 +66,12 @@ int base64_digit(char c) {
 Json gltf_json(const fs::path& file) {
     check_regular(file, "a mesh's file");
     const std::optional<std::size_t> length = json_length(file);
-    return Json::parse(length ? bytes_of(file, kJsonBegin, *length) : read_file(file), file.string());
+    const std::string text = length ? bytes_of(file, kJsonBegin, *length) : read_file(file);
+    if (length && text.size() < *length) {  // for which Assimp makes room before it looks
+        throw InputError(
+            fmt::format("{}: is cut off: {} bytes of JSON, {} are there", file.string(), *length, text.size()));
+    }
+    return Json::parse(text, file.string());
 }
 
 std::string glb_buffer(const fs::path& file) {
