@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -19,39 +18,24 @@ namespace {
 constexpr std::size_t kDeepest = 256;
 constexpr std::size_t kMostNodes = 250'000;
 
-/// The nodes as a list of those below each. Version 1 names them, version 2 numbers them.
+/// The nodes as a list of those below each.
 class NodeTree {
   public:
     NodeTree(const Json& top, std::string file) : file_(std::move(file)) {
-        const Json& nodes = top["nodes"];
-        std::map<std::string, std::size_t> by_name;
-        for (const auto& [name, node] : nodes.members()) {
-            by_name.emplace(name, by_name.size());
-        }
+        const std::size_t nodes = top["nodes"].size();
         const auto indices = [&](const Json& list) {
             std::vector<std::size_t> found;
             for (const Json& entry : list) {
-                if (const auto named = entry.is_text() ? by_name.find(entry.text()) : by_name.end();
-                    named != by_name.end()) {
-                    found.push_back(named->second);
-                } else if (entry.is_number() && entry.number() >= 0.0 &&
-                           entry.number() < static_cast<double>(nodes.size())) {
+                if (entry.is_number() && entry.number() >= 0.0 && entry.number() < static_cast<double>(nodes)) {
                     found.push_back(static_cast<std::size_t>(entry.number()));
                 }
             }
             return found;
         };
-        for (const Json& node : nodes) {
+        for (const Json& node : top["nodes"]) {
             below_.push_back(indices(node["children"]));
         }
-        for (const auto& [name, node] : nodes.members()) {
-            below_.push_back(indices(node["children"]));
-        }
-        const Json& scenes = top["scenes"];
-        for (const Json& scene : scenes) {
-            scenes_.push_back(indices(scene["nodes"]));
-        }
-        for (const auto& [name, scene] : scenes.members()) {
+        for (const Json& scene : top["scenes"]) {
             scenes_.push_back(indices(scene["nodes"]));
         }
     }

@@ -48,7 +48,7 @@ std::string bytes_of(const fs::path& file, std::size_t from, std::size_t count) 
 }
 
 /// The length of the binary form's JSON, which follows five words: magic, version, length, and the chunk's length and
-/// kind (version 1 has its length in the same place); none of the other form.
+/// kind; none of the other form.
 std::optional<std::size_t> json_length(const fs::path& file) {
     const std::string head = bytes_of(file, 0, kJsonBegin);
     return head.size() == kJsonBegin && head.starts_with("glTF") ? std::optional<std::size_t>(word_at(head, 3 * kWord))
@@ -71,7 +71,12 @@ Json gltf_json(const fs::path& file) {
         throw InputError(
             fmt::format("{}: is cut off: {} bytes of JSON, {} are there", file.string(), *length, text.size()));
     }
-    return Json::parse(text, file.string());
+    Json json = Json::parse(text, file.string());
+    const Json& version = json["asset"]["version"];
+    if (!version.is_text() || !version.text().starts_with("2")) {
+        throw InputError(fmt::format("{}: is no glTF of version 2, of which alone meshes are read", file.string()));
+    }
+    return json;
 }
 
 std::string glb_buffer(const fs::path& file) {

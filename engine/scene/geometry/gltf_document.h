@@ -9,7 +9,7 @@
 namespace lensproof::scene {
 
 /// The JSON of a file: all of it, or the first chunk of the binary form. The rest is not read. Throws InputError where
-/// it is none.
+/// it is none, or of another version than 2.
 Json gltf_json(const std::filesystem::path& file);
 
 /// The bytes of the binary form's second chunk; none in the other form, or where there is no such chunk.

@@ -235,7 +235,8 @@ class RegularFiles : public Assimp::DefaultIOSystem {
 };
 
 /// Leaves the importer the one reader of such files: where that makes nothing of a file, Assimp would ask all others,
-/// of which any may find something in it that it takes for its own kind.
+/// of which any may find something in it that it takes for its own kind. Of glTF that is version 2's: the reader of
+/// version 1 takes a buffer for as long as an accessor says.
 void keep_reader(Assimp::Importer& importer, const std::string& extension) {
     for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
         const aiImporterDesc& reader = *importer.GetImporterInfo(i);

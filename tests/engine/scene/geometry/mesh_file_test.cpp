@@ -341,6 +341,7 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     expect_named("offset.gltf", with(gltf, R"("byteOffset": 96)", R"("byteOffset": 160)"));
     expect_named("scheme.gltf", box_gltf(R"("uri": "http://", )"), "names http://, expected a file beside it");
     expect_named("short.glb", std::string("glTF\2\0\0\0\x40\0\0\0\xF0\0\xFF\xFEJSON{}", 22), "cut off");
+    expect_named("first.gltf", with(gltf, R"("version": "2.0")", R"("version": "1.0")"), "no glTF of version 2");
     expect_named("loop.gltf", with(gltf, R"("children": [1])", R"("children": [0])"));
     EXPECT_NE(complaint_about([] { read_mesh("no/such.obj"); }).find("no/such.obj: no such file"), std::string::npos);
     EXPECT_NE(complaint_about([] { read_mesh(testing::TempDir()); }).find("is a folder"), std::string::npos);
