@@ -26,7 +26,7 @@ std::filesystem::path file_of(std::string_view bytes, const char* name) {
 }
 
 /// Pictures that a fuzzer has time for; larger ones take longer, and that is all.
-constexpr double kLargestMib = 16.0;
+constexpr double kLargestMib = 2.0;
 
 formats::Image read_both_ways(const std::filesystem::path& file) {
     formats::largest_picture_mib() = kLargestMib;
