@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/optics/reflect.h"
+#include "engine/optics/surface_axes.h"
 
 namespace lensproof::optics {
 
@@ -83,16 +84,24 @@ constexpr bool reflect_at_sensor(const OfLens& lens, const StrayMirrors<T>& mirr
     return true;
 }
 
-/// Takes `ray` to surface `index`, forward or back, and through it or back from it. Returns the status there, as an
-/// event of `trace` has it, and whether the ray goes on. A step of `trace`, with the same pieces in the same order, so
-/// that a ray which nothing has reflected yet has the same bits; that loop is by itself, for it is as quick as it is
-/// only with its state in single variables.
-template <Rims rims, class OfLens, class T>
-constexpr std::pair<RayStatus, bool> run_to_surface(const OfLens& lens, int index, bool forward, AtSurface what,
-                                                    const StrayMirrors<T>& mirrors, TravellingRay<T>& ray) {
+/// Where a ray has come to a surface: what decides how it goes on.
+template <class T>
+struct AtMeeting {
+    Vec3<T> direction{};  // of the ray, in the surface's own frame
+    Vec3<T> normal{};     // of unit length, turned along the ray
+    T cos_incidence = T(0);
+    T open = T(1);  // of a stop's mask
+    Refraction<T> bent{};
+};
+
+/// Takes `ray` to surface `index`, forward or back, where it is to go on as `what` says, by `go_on(const
+/// AtMeeting<T>&)`, which answers whether it does: a function that is called from here, so that all this stays in
+/// single variables. Returns the status there, as an event of `trace` has it, and whether the ray goes on.
+template <Rims rims, class OfLens, class T, class GoOn>
+constexpr std::pair<RayStatus, bool> come_to_surface(const OfLens& lens, int index, bool forward, AtSurface what,
+                                                     TravellingRay<T>& ray, GoOn&& go_on) {
     const TraceSurface<T>& surface = lens.surfaces[static_cast<std::size_t>(index)];
-    const typename OfLens::Special* special =
-        surface.special < 0 ? nullptr : &lens.specials[static_cast<std::size_t>(surface.special)];
+    const typename OfLens::Special* special = special_of(lens, surface);
     const T heading = forward ? T(1) : T(-1);
     const auto ended = [&](RayStatus why) {
         ray.end(why, index);
@@ -110,7 +119,7 @@ constexpr std::pair<RayStatus, bool> run_to_surface(const OfLens& lens, int inde
     const T& c = surface.curvature;
     T to_vertex = T(0);
     Intersection<T> meeting;
-    Vec3<T> normal;  // of unit length, turned along the ray
+    Vec3<T> normal;
     const bool is_shaped = special != nullptr && special->has_shape;
     if (is_shaped) {
         std::tie(meeting, normal) = intersect(special->shape, from_vertex, direction, heading);
@@ -163,28 +172,65 @@ constexpr std::pair<RayStatus, bool> run_to_surface(const OfLens& lens, int inde
         is_shaped
             ? refract(direction, normal, meeting.cos_incidence, meeting.sin2_incidence, ratio)
             : refract_at_sphere(direction, point, c, heading, meeting.cos_incidence, meeting.sin2_incidence, ratio);
-    if (what == AtSurface::reflect) {
-        direction = reflect(direction, normal, meeting.cos_incidence);
-        ray.at_surfaces =
-            ray.at_surfaces *
-            (by_blades ? T(mirrors.blades * (T(1) - open))
-                       : T(open * surface_reflectance(surface, special, forward, meeting.cos_incidence, bent)));
-    } else {
-        if (!bent.transmitted) {
-            return ended(RayStatus::total_internal_reflection);
-        }
-        direction = bent.direction;
-        const T& index_after = forward ? surface.index_after : surface.index_before;
-        T passing = special != nullptr && !special->coating.is_bare()
-                        ? coated_transmittance(surface, *special, forward, meeting.cos_incidence)
-                        : fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
-        if (special != nullptr) {
-            passing = passing * open;
-        }
-        ray.at_surfaces = ray.at_surfaces * passing;
-    }
+    const bool goes_on = go_on(AtMeeting<T>{direction, normal, meeting.cos_incidence, open, bent});
+    return {goes_on ? here : ray.status, goes_on};
+}
+
+/// Of the light that comes to the surface there, what goes back from it: from the blades of a stop, if it has them.
+template <class OfLens, class T>
+constexpr T reflected_at(const OfLens& lens, int index, bool forward, const StrayMirrors<T>& mirrors,
+                         const AtMeeting<T>& at) {
+    const TraceSurface<T>& surface = lens.surfaces[static_cast<std::size_t>(index)];
+    return reflects_by_blades(surface) ? T(mirrors.blades * (T(1) - at.open))
+                                       : T(at.open * surface_reflectance(surface, special_of(lens, surface), forward,
+                                                                         at.cos_incidence, at.bent));
+}
+
+/// Sends `ray`, which has come there, back.
+template <class OfLens, class T>
+constexpr void turn_back(const OfLens& lens, int index, const AtMeeting<T>& at, TravellingRay<T>& ray) {
+    const typename OfLens::Special* special = special_of(lens, lens.surfaces[static_cast<std::size_t>(index)]);
+    const Vec3<T> direction = reflect(at.direction, at.normal, at.cos_incidence);
     ray.direction = special != nullptr ? special->from_own(direction) : direction;
-    return {here, true};
+}
+
+/// Sends `ray`, which has come there, through the surface; false, and the ray is ended, where all of it is reflected.
+template <class OfLens, class T>
+[[gnu::always_inline]] constexpr bool pass_surface(const OfLens& lens, int index, bool forward, const AtMeeting<T>& at,
+                                                   TravellingRay<T>& ray) {
+    if (!at.bent.transmitted) {
+        ray.end(RayStatus::total_internal_reflection, index);
+        return false;
+    }
+    const TraceSurface<T>& surface = lens.surfaces[static_cast<std::size_t>(index)];
+    const typename OfLens::Special* special = special_of(lens, surface);
+    const T& index_before = forward ? surface.index_before : surface.index_after;
+    const T& index_after = forward ? surface.index_after : surface.index_before;
+    T passing = special != nullptr && !special->coating.is_bare()
+                    ? coated_transmittance(surface, *special, forward, at.cos_incidence)
+                    : fresnel_transmittance(index_before, index_after, at.cos_incidence, at.bent.cos_refraction);
+    if (special != nullptr) {
+        passing = passing * at.open;
+    }
+    ray.at_surfaces = ray.at_surfaces * passing;
+    ray.direction = special != nullptr ? special->from_own(at.bent.direction) : at.bent.direction;
+    return true;
+}
+
+/// Takes `ray` to surface `index`, forward or back, and through it or back from it; returns what `come_to_surface`
+/// does. A step of `trace`, with the same pieces in the same order, so that a ray which nothing has reflected yet has
+/// the same bits; that loop is by itself, for it is as quick as it is only with its state in single variables.
+template <Rims rims, class OfLens, class T>
+constexpr std::pair<RayStatus, bool> run_to_surface(const OfLens& lens, int index, bool forward, AtSurface what,
+                                                    const StrayMirrors<T>& mirrors, TravellingRay<T>& ray) {
+    return come_to_surface<rims>(lens, index, forward, what, ray, [&](const AtMeeting<T>& at) {
+        if (what == AtSurface::pass) {
+            return pass_surface(lens, index, forward, at, ray);
+        }
+        ray.at_surfaces = ray.at_surfaces * reflected_at(lens, index, forward, mirrors, at);
+        turn_back(lens, index, at, ray);
+        return true;
+    });
 }
 
 /// Traces `ray` along a ghost: to the first surface of `path`, reflected there, back to the second, and so on, until it

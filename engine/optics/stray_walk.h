@@ -128,7 +128,9 @@ class StrayWalk {
         int surface = 0;
         bool forward = true;
         double distance = 0.0;
-        TravellingRay<double> passed;
+        TravellingRay<double> come;  // to the surface, and not through it yet
+        bool goes_on = true;
+        AtMeeting<double> meeting;
         double open = 1.0;  // of a stop's mask at the point
     };
 
@@ -143,14 +145,19 @@ class StrayWalk {
     /// The surface where the ray crosses it inside its rim.
     [[nodiscard]] std::optional<GlassMeeting> meet_surface(const Ray<double>& ray, int index, bool forward) const {
         GlassMeeting meeting{
-            .surface = index, .forward = forward, .passed = {.origin = ray.origin, .direction = ray.direction}};
-        const RayStatus status =
-            run_to_surface<Rims::clip>(lens_, index, forward, AtSurface::pass, mirrors_, meeting.passed).first;
+            .surface = index, .forward = forward, .come = {.origin = ray.origin, .direction = ray.direction}};
+        const auto keep = [&](const AtMeeting<double>& at) {
+            meeting.meeting = at;
+            return true;
+        };
+        const auto [status, goes_on] =
+            come_to_surface<Rims::clip>(lens_, index, forward, AtSurface::pass, meeting.come, keep);
+        meeting.goes_on = goes_on;
         if (status == RayStatus::missed || status == RayStatus::clipped) {
             return std::nullopt;
         }
         const TraceSurface<double>& surface = lens_.surfaces[static_cast<std::size_t>(index)];
-        const Vec3d point = meeting.passed.global().origin;
+        const Vec3d point = meeting.come.global().origin;
         if (const SpecialSurface<double>* special = special_of(lens_, surface)) {
             const Vec3d own = to_own_axes(lens_, surface, point);
             const bool is_beyond = own.x * own.x + own.y * own.y > surface.semi_diameter_squared;
@@ -160,9 +167,6 @@ class StrayWalk {
             }
         } else if (status == RayStatus::stopped) {
             return std::nullopt;
-        }
-        if (status != RayStatus::ok) {
-            meeting.passed.at_surfaces = 0.0;
         }
         meeting.distance = dot(point - ray.origin, ray.direction);
         return meeting;
@@ -294,26 +298,33 @@ class StrayWalk {
 
     std::optional<StrayEnd> leave_surface(StrayLight& light, const GlassMeeting& at) {
         const TraceSurface<double>& surface = lens_.surfaces[static_cast<std::size_t>(at.surface)];
-        light.weight *= at.passed.optical_depth > 0.0 ? fading(at.passed.optical_depth) : 1.0;
+        light.weight *= at.come.optical_depth > 0.0 ? fading(at.come.optical_depth) : 1.0;
         if (at.open < 1.0 && numbers_() >= at.open) {
-            light.ray.origin = at.passed.global().origin;
+            light.ray.origin = at.come.global().origin;
             if (reflects_by_blades(surface) && numbers_() < mirrors_.blades) {
                 leave_mirror(light);
                 return std::nullopt;
             }
             return leave_wall(light, {0.0, 0.0, at.forward ? -1.0 : 1.0}, barrel_.finish().blades);
         }
-        const double passing = at.passed.at_surfaces / at.open;
-        TravellingRay<double> reflected{.origin = light.ray.origin, .direction = light.ray.direction};
-        double reflecting = 0.0;
-        if (!reflects_by_blades(surface)) {
-            run_to_surface<Rims::clip>(lens_, at.surface, at.forward, AtSurface::reflect, mirrors_, reflected);
-            reflecting = reflected.at_surfaces / at.open;
+        if (!at.goes_on) {
+            return StrayEnd::absorbed;
         }
+        TravellingRay<double> passed = at.come;
+        const bool is_through = pass_surface(lens_, at.surface, at.forward, at.meeting, passed);
+        const double passing = is_through ? passed.at_surfaces / at.open : 0.0;
+        const double reflecting = reflects_by_blades(surface)
+                                      ? 0.0
+                                      : reflected_at(lens_, at.surface, at.forward, mirrors_, at.meeting) / at.open;
+        const auto reflected = [&] {
+            TravellingRay<double> back = at.come;
+            turn_back(lens_, at.surface, at.meeting, back);
+            return back.global();
+        };
         const bool is_dusty = at.surface == 0 && barrel_.dust() != nullptr;
-        const Vec3d along = is_dusty ? normalized(light.ray.direction - reflected.direction) : Vec3d{};  // the normal
-        if (is_dusty && at.forward && meets_dust(at.passed.global().origin)) {
-            light.ray.origin = at.passed.global().origin;
+        const Vec3d along = is_dusty ? normalized(light.ray.direction - reflected().direction) : Vec3d{};  // the normal
+        if (is_dusty && at.forward && meets_dust(at.come.global().origin)) {
+            light.ray.origin = at.come.global().origin;
             light.dust_normal = -1.0 * along;
             return leave_dust(light, -1.0 * along, false);
         }
@@ -323,7 +334,7 @@ class StrayWalk {
         }
         light.weight *= going_on;
         const bool is_back = reflecting > 0.0 && numbers_() * going_on < reflecting;
-        light.ray = is_back ? reflected.global() : at.passed.global();
+        light.ray = is_back ? reflected() : passed.global();
         light.reflections += is_back ? 1 : 0;
         witness_.at_surface(is_back ? AtSurface::reflect : AtSurface::pass, at.surface, at.forward, light.ray);
         if (is_dusty && !at.forward && !is_back && meets_dust(light.ray.origin)) {
