@@ -33,6 +33,16 @@ Measured rms(const std::vector<double>& values) {
     return root({sum / n, std::sqrt(std::max(0.0, fourth / n - std::pow(sum / n, 2)) / n)});
 }
 
+Measured rms_over_pixels(const Pilot& pilot, const std::function<double(int x, int y)>& of) {
+    std::vector<double> all;
+    for (int y = 0; y < pilot.height(); ++y) {
+        for (int x = 0; x < pilot.width(); ++x) {
+            all.push_back(of(x, y));
+        }
+    }
+    return rms(all);
+}
+
 Contribution difference(const Pilot& pilot, const std::vector<Image>& without) {
     const PictureErrors found = picture_errors(without, pilot.full().rgb, pilot.settings().probe.threads);
     return {.px = {},
@@ -41,63 +51,32 @@ Contribution difference(const Pilot& pilot, const std::vector<Image>& without) {
 }
 
 Effect gain_effect(const Pilot& pilot, const std::string& name, const Vec3d& gain) {
+    const auto gained = [&](const Image& picture) { return with_gain(picture, [&](int, int) { return gain; }); };
     return {.name = name,
-            .contribution = {
-                .px = {}, .ev = {std::abs(std::log2(gain.y)), 0.0}, .ciede2000 = seen(pilot, [&](const Image& picture) {
-                                                                        return with_gain(
-                                                                            picture, [&](int, int) { return gain; });
-                                                                    })}};
+            .contribution = {.px = {}, .ev = {std::abs(std::log2(gain.y)), 0.0}, .ciede2000 = seen(pilot, gained)}};
 }
 
-Effect falloff_effect(const Pilot& pilot, const std::string& name, const RadialMean& light) {
-    std::vector<double> ev;
-    for (int y = 0; y < pilot.height(); ++y) {
-        for (int x = 0; x < pilot.width(); ++x) {
-            ev.push_back(std::log2(std::max(1e-3, light.at(pilot.image_height(x, y)))));
-        }
-    }
-    return {.name = name,
-            .contribution = {.px = {}, .ev = rms(ev), .ciede2000 = seen(pilot, [&](const Image& picture) {
-                                                          return with_gain(picture, [&](int x, int y) {
-                                                              const double gain =
-                                                                  1.0 /
-                                                                  std::max(1e-3, light.at(pilot.image_height(x, y)));
-                                                              return Vec3d{gain, gain, gain};
-                                                          });
-                                                      })}};
+Effect falloff_effect(const Pilot& pilot, const std::string& name, const RadialMean& light, const Measured& ev) {
+    const auto brighter = [&](int x, int y) {
+        const double gain = 1.0 / std::max(1e-3, light.at(pilot.image_height(x, y)));
+        return Vec3d{gain, gain, gain};
+    };
+    const auto without = [&](const Image& picture) { return with_gain(picture, brighter); };
+    return {.name = name, .contribution = {.px = {}, .ev = ev, .ciede2000 = seen(pilot, without)}};
 }
 
-Effect shift_effect(const Pilot& pilot, const std::string& name, const std::array<RadialMean, 3>& shift_px) {
-    std::vector<double> all;
-    for (int y = 0; y < pilot.height(); ++y) {
-        for (int x = 0; x < pilot.width(); ++x) {
-            double square = 0.0;
-            for (const RadialMean& shift : shift_px) {
-                square += std::pow(shift.at(pilot.image_height(x, y)), 2) / 3.0;
-            }
-            all.push_back(std::sqrt(square));
-        }
-    }
-    return {.name = name,
-            .contribution = {.px = rms(all), .ev = {}, .ciede2000 = seen(pilot, [&](const Image& picture) {
-                                                           return with_shift(picture, [&](int x, int y, int c) {
-                                                               const double by =
-                                                                   shift_px[static_cast<std::size_t>(c)].at(
-                                                                       pilot.image_height(x, y));
-                                                               return by * pilot.outwards(x, y);
-                                                           });
-                                                       })}};
+Effect shift_effect(const Pilot& pilot, const std::string& name, const std::array<RadialMean, 3>& shift_px,
+                    const Measured& px) {
+    const auto shift = [&](int x, int y, int c) {
+        return shift_px[static_cast<std::size_t>(c)].at(pilot.image_height(x, y)) * pilot.outwards(x, y);
+    };
+    const auto shifted = [&](const Image& picture) { return with_shift(picture, shift); };
+    return {.name = name, .contribution = {.px = px, .ev = {}, .ciede2000 = seen(pilot, shifted)}};
 }
 
-Effect blur_effect(const Pilot& pilot, const std::string& name, const PixelSpread& spread_px) {
-    std::vector<double> all;
-    for (int y = 0; y < pilot.height(); ++y) {
-        for (int x = 0; x < pilot.width(); ++x) {
-            all.push_back(spread_px(x, y));
-        }
-    }
+Effect blur_effect(const Pilot& pilot, const std::string& name, const PixelSpread& spread_px, const Measured& px) {
     const auto blurred = [&](const Image& picture) { return with_spread(picture, spread_px); };
-    return {.name = name, .contribution = {.px = rms(all), .ev = {}, .ciede2000 = seen(pilot, blurred)}};
+    return {.name = name, .contribution = {.px = px, .ev = {}, .ciede2000 = seen(pilot, blurred)}};
 }
 
 }  // namespace lensproof::studies

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -64,17 +65,42 @@ void add_losses(const Pilot& pilot, const AxialLight& light, std::vector<Effect>
     effects.push_back(gain_effect(pilot, "absorption", ratio(light.white, light.glass)));
 }
 
-/// A number of the probe's points over the image height.
-template <class Of>
-RadialMean over_heights(const Pilot& pilot, const Of& of) {
+/// The exact camera and a model as they see the points.
+struct SeenPoints {
+    const Pilot& pilot;
+    PointLooks exact;
+    PointLooks model;
+};
+
+/// Of a point, from both cameras' looks at all of them; nothing where it has no such number.
+using PointNumber = std::function<std::optional<double>(const std::vector<PointLook>& exact,
+                                                        const std::vector<PointLook>& model, std::size_t point)>;
+
+RadialMean over_heights(const SeenPoints& seen, const PointNumber& of) {
     std::vector<RadialMean::Sample> samples;
-    for (std::size_t i = 0; i < pilot.points().size(); ++i) {
-        if (const std::optional<double> value = of(i)) {
-            samples.push_back({pilot.points()[i].image_height, *value});
+    for (std::size_t i = 0; i < seen.pilot.points().size(); ++i) {
+        if (const std::optional<double> value = of(seen.exact.back(), seen.model.back(), i)) {
+            samples.push_back({seen.pilot.points()[i].image_height, *value});
         }
     }
     constexpr int kRings = 8;
     return {std::move(samples), kRings};
+}
+
+Measured rms_over_points(const SeenPoints& seen, const PointNumber& of) {
+    const int repetitions = static_cast<int>(seen.exact.size()) - 1;
+    return root(jackknifed(repetitions, [&](int left_out) {
+        const auto looks = static_cast<std::size_t>(left_out);
+        double squares = 0.0;
+        double count = 0.0;
+        for (std::size_t i = 0; i < seen.pilot.points().size(); ++i) {
+            if (const std::optional<double> value = of(seen.exact[looks], seen.model[looks], i)) {
+                squares += *value * *value;
+                count += 1.0;
+            }
+        }
+        return squares / std::max(1.0, count);
+    }));
 }
 
 double outward(const Pilot& pilot, std::size_t point, const Vec2d& shift) {
@@ -83,34 +109,48 @@ double outward(const Pilot& pilot, std::size_t point, const Vec2d& shift) {
     return distance > 0.0 ? (shift.x * from.x + shift.y * from.y) / distance : 0.0;
 }
 
-void add_geometry(const Pilot& pilot, const std::vector<PointLook>& exact, const std::vector<PointLook>& thin,
-                  std::vector<Effect>& effects) {
-    const auto is_lit = [&](std::size_t i) { return exact[i].light[1] > 0.0 && thin[i].light[1] > 0.0; };
-    const RadialMean distortion = over_heights(pilot, [&](std::size_t i) -> std::optional<double> {
-        return is_lit(i) ? std::optional(outward(pilot, i, exact[i].centroid[1] - thin[i].centroid[1])) : std::nullopt;
-    });
-    effects.push_back(shift_effect(pilot, "distortion", {distortion, distortion, distortion}));
-    const auto against_green = [&](std::size_t c) {
-        return over_heights(pilot, [&](std::size_t i) -> std::optional<double> {
-            return is_lit(i) && exact[i].light[c] > 0.0
-                       ? std::optional(outward(pilot, i, exact[i].centroid[c] - exact[i].centroid[1]))
-                       : std::nullopt;
-        });
+/// Beside a thin lens.
+void add_geometry(const SeenPoints& seen, std::vector<Effect>& effects) {
+    using Looks = std::vector<PointLook>;
+    const Pilot& pilot = seen.pilot;
+    /// Only of points that both cameras see.
+    const auto lit = [](const auto& of) -> PointNumber {
+        return [of](const Looks& exact, const Looks& thin, std::size_t i) {
+            return exact[i].light[1] > 0.0 && thin[i].light[1] > 0.0 ? std::optional<double>(of(exact, thin, i))
+                                                                     : std::nullopt;
+        };
     };
-    effects.push_back(shift_effect(pilot, "lateral-colour", {against_green(0), against_green(1), against_green(2)}));
-    const RadialMean blur = over_heights(pilot, [&](std::size_t i) -> std::optional<double> {
-        return is_lit(i) ? std::optional(exact[i].spread_px[1]) : std::nullopt;
+    const PointNumber moved = lit([&](const Looks& exact, const Looks& thin, std::size_t i) {
+        return outward(pilot, i, exact[i].centroid[1] - thin[i].centroid[1]);
     });
-    const auto height_of = [&](int x, int y) { return pilot.image_height(x, y); };
-    effects.push_back(blur_effect(pilot, "aberration-blur", [&](int x, int y) { return blur.at(height_of(x, y)); }));
+    const RadialMean distortion = over_heights(seen, moved);
+    effects.push_back(
+        shift_effect(pilot, "distortion", {distortion, distortion, distortion}, rms_over_points(seen, moved)));
+    const auto against_green = [&](const Looks& exact, std::size_t i, std::size_t c) {
+        return exact[i].light[c] > 0.0 ? outward(pilot, i, exact[i].centroid[c] - exact[i].centroid[1]) : 0.0;
+    };
+    const auto colour = [&](std::size_t c) {
+        return over_heights(
+            seen, lit([&, c](const Looks& exact, const Looks&, std::size_t i) { return against_green(exact, i, c); }));
+    };
+    const PointNumber all_colours = lit([&](const Looks& exact, const Looks&, std::size_t i) {
+        return std::hypot(against_green(exact, i, 0), against_green(exact, i, 2)) / std::sqrt(3.0);
+    });
+    effects.push_back(
+        shift_effect(pilot, "lateral-colour", {colour(0), colour(1), colour(2)}, rms_over_points(seen, all_colours)));
+    const auto add_blur = [&](const char* name, const PointNumber& of) {
+        const RadialMean spread = over_heights(seen, of);
+        effects.push_back(blur_effect(
+            pilot, name, [&](int x, int y) { return spread.at(pilot.image_height(x, y)); }, rms_over_points(seen, of)));
+    };
+    add_blur("aberration-blur",
+             lit([](const Looks& exact, const Looks&, std::size_t i) { return exact[i].spread_px[1]; }));
     // What red and blue are wider than green by.
-    const RadialMean axial = over_heights(pilot, [&](std::size_t i) -> std::optional<double> {
-        const auto& spread = exact[i].spread_px;
-        return is_lit(i) ? std::optional(std::sqrt(std::max(
-                               0.0, 0.5 * (spread[0] * spread[0] + spread[2] * spread[2]) - spread[1] * spread[1])))
-                         : std::nullopt;
-    });
-    effects.push_back(blur_effect(pilot, "axial-colour", [&](int x, int y) { return axial.at(height_of(x, y)); }));
+    add_blur("axial-colour", lit([](const Looks& exact, const Looks&, std::size_t i) {
+                 const auto& spread = exact[i].spread_px;
+                 return std::sqrt(
+                     std::max(0.0, 0.5 * (spread[0] * spread[0] + spread[2] * spread[2]) - spread[1] * spread[1]));
+             }));
 }
 
 /// A thin lens's discs at the depths that the pilot saw, rms radius in px: the diameter is f²/(N (s − f)) |d − s| / d.
@@ -119,15 +159,15 @@ Effect defocus(const Pilot& pilot) {
     const optics::ParaxialData data =
         optics::paraxial_data(optics::at_wavelength<double>(pilot.camera().lens().value(), spectral::kLineD));
     const double focus = settings.focus_distance_mm;
-    return blur_effect(pilot, "defocus",
-                       [&, efl = std::abs(data.efl), aperture = data.entrance_pupil_diameter](int x, int y) {
-                           const double depth = pilot.depth_mm(x, y);
-                           const double nearness = std::isfinite(depth) && depth > 0.0 ? 1.0 / depth : 0.0;
-                           const double focal_nearness = std::isfinite(focus) ? 1.0 / focus : 0.0;
-                           const double image_mm = efl / (1.0 - efl * focal_nearness);
-                           const double disc_mm = aperture * image_mm * std::abs(nearness - focal_nearness);
-                           return disc_mm / std::sqrt(8.0) / settings.sensor.pixel_pitch_mm;
-                       });
+    const double focal_nearness = std::isfinite(focus) ? 1.0 / focus : 0.0;
+    const double image_mm = std::abs(data.efl) / (1.0 - std::abs(data.efl) * focal_nearness);
+    const auto disc_px = [&](int x, int y) {
+        const double depth = pilot.depth_mm(x, y);
+        const double nearness = std::isfinite(depth) && depth > 0.0 ? 1.0 / depth : 0.0;
+        const double disc_mm = data.entrance_pupil_diameter * image_mm * std::abs(nearness - focal_nearness);
+        return disc_mm / std::sqrt(8.0) / settings.sensor.pixel_pitch_mm;
+    };
+    return blur_effect(pilot, "defocus", disc_px, rms_over_pixels(pilot, disc_px));
 }
 
 /// What blurs in third order, rms over the pupil: transverse aberrations are ∂W/∂ρ / n'u' of
@@ -147,9 +187,10 @@ void add_third_order(const Pilot& pilot, std::vector<Effect>& effects) {
     const auto& total = sums->total;
     const double px = 1.0 / (2.0 * std::abs(sums->image_slope) * sensor.pixel_pitch_mm);
     const auto add = [&](const char* name, double at_corner, int power_of_field) {
-        effects.push_back(blur_effect(pilot, name, [&](int x, int y) {
+        const auto spread = [&](int x, int y) {
             return px * std::abs(at_corner) * std::pow(pilot.image_height(x, y), power_of_field);
-        }));
+        };
+        effects.push_back(blur_effect(pilot, name, spread, rms_over_pixels(pilot, spread)));
         effects.back().part_of = "aberration-blur";
     };
     add("spherical-aberration", total.s1 / 6.0, 0);
@@ -158,19 +199,26 @@ void add_third_order(const Pilot& pilot, std::vector<Effect>& effects) {
     add("field-curvature", std::sqrt(0.5) * (2.0 * total.s3 + total.s4), 2);
 }
 
-void add_falloff(const Pilot& pilot, const std::vector<PointLook>& exact, const std::vector<PointLook>& thin,
-                 std::vector<Effect>& effects) {
-    const auto nearest = std::ranges::min_element(pilot.points(), {}, &ProbePoint::image_height);
-    const auto middle = static_cast<std::size_t>(nearest - pilot.points().begin());
-    const RadialMean cos4 = over_heights(pilot, [&](std::size_t i) -> std::optional<double> {
-        return thin[i].even_light > 0.0 ? std::optional(thin[i].even_light / thin[middle].even_light) : std::nullopt;
+/// Beside a pinhole, which counts for all of the pupil of first order: what the lens's own is wider or narrower than
+/// that on the axis is in the vignetting.
+void add_falloff(const SeenPoints& seen, std::vector<Effect>& effects) {
+    using Looks = std::vector<PointLook>;
+    const auto nearest = std::ranges::min_element(seen.pilot.points(), {}, &ProbePoint::image_height);
+    const auto middle = static_cast<std::size_t>(nearest - seen.pilot.points().begin());
+    const auto add = [&](const char* name, const PointNumber& light) {
+        const PointNumber ev = [&](const Looks& exact, const Looks& pinhole, std::size_t i) {
+            const std::optional<double> there = light(exact, pinhole, i);
+            return there ? std::optional(std::log2(std::max(1e-3, *there))) : std::nullopt;
+        };
+        effects.push_back(falloff_effect(seen.pilot, name, over_heights(seen, light), rms_over_points(seen, ev)));
+    };
+    add("vignetting", [](const Looks& exact, const Looks& pinhole, std::size_t i) {
+        return pinhole[i].even_light > 0.0 ? std::optional(exact[i].even_light / pinhole[i].even_light) : std::nullopt;
     });
-    // Both pass the same along the axis.
-    const RadialMean rims = over_heights(pilot, [&](std::size_t i) -> std::optional<double> {
-        return thin[i].even_light > 0.0 ? std::optional(exact[i].even_light / thin[i].even_light) : std::nullopt;
+    add("cos4", [middle](const Looks&, const Looks& pinhole, std::size_t i) {
+        return pinhole[i].even_light > 0.0 ? std::optional(pinhole[i].even_light / pinhole[middle].even_light)
+                                           : std::nullopt;
     });
-    effects.push_back(falloff_effect(pilot, "vignetting", rims));
-    effects.push_back(falloff_effect(pilot, "cos4", cos4));
 }
 
 /// What the electronics behind the film do, where a scene has any: a pixel's noise, rms, of electrons, their reading
@@ -206,17 +254,19 @@ Effect sensor(const Pilot& pilot) {
 
 std::vector<Effect> lens_effects(const Pilot& pilot) {
     const PilotSettings& settings = pilot.settings();
-    const render::SceneSetup thin_setup =
-        on_rung(pilot.setup(), {.name = "thin-lens", .model = render::LensModel::thin_lens});
-    const render::Camera thin_camera(thin_setup.camera, thin_setup.spectral, render::PixelFilter{}, settings.cache,
-                                     true);
-    const std::vector<PointLook> exact = look_at_points(pilot.camera(), pilot.points(), settings.probe);
-    const std::vector<PointLook> thin = look_at_points(thin_camera, pilot.points(), settings.probe);
+    const auto look_through = [&](const render::Camera& camera) {
+        return look_at_points(camera, pilot.points(), settings.probe);
+    };
+    const auto look_by = [&](const char* name, render::LensModel model) {
+        const render::SceneSetup setup = on_rung(pilot.setup(), {.name = name, .model = model});
+        return look_through({setup.camera, setup.spectral, render::PixelFilter{}, settings.cache, true});
+    };
+    const PointLooks exact = look_through(pilot.camera());
     std::vector<Effect> effects;
-    add_geometry(pilot, exact, thin, effects);
+    add_geometry({pilot, exact, look_by("thin-lens", render::LensModel::thin_lens)}, effects);
     add_third_order(pilot, effects);
     effects.push_back(defocus(pilot));
-    add_falloff(pilot, exact, thin, effects);
+    add_falloff({pilot, exact, look_by("pinhole", render::LensModel::pinhole)}, effects);
     add_losses(pilot, axial_light(pilot), effects);
     effects.push_back(sensor(pilot));
     return effects;

@@ -24,8 +24,10 @@ struct Effect {
 /// What the full model has and a lens without it has not: distortion, lateral-colour, aberration-blur, axial-colour,
 /// defocus, vignetting, cos4, fresnel-loss, coating-colour, absorption, sensor. Each is done to the pilot's pictures,
 /// or taken from them. Of the blur, what it is made of in third order: spherical-aberration, coma, astigmatism and
-/// field-curvature, which wide fields and apertures exceed. Pictures have much the same detail at every scale (Ruderman
-/// 1994), so that a shift or a blur of so many of the scene's pixels is done to as many of the pilot's.
+/// field-curvature, which wide fields and apertures exceed. Places, widths and light are the root mean square over the
+/// probe's points, places beside a thin lens and light beside a pinhole, whose pupil is that of first order. Pictures
+/// have much the same detail at every scale (Ruderman 1994), so that a shift or a blur of so many of the scene's pixels
+/// is done to as many of the pilot's.
 std::vector<Effect> lens_effects(const Pilot& pilot);
 
 /// Light that goes astray: ghosts, faint-ghosts, barrel, diffraction. By a few samples of the first's and the third's

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <numeric>
 #include <optional>
 
@@ -80,7 +80,7 @@ class PointCamera {
         paths.start({.first_pixel = point_->pixel,
                      .pixels = 1,
                      .first_sample = 0,
-                     .samples = static_cast<std::uint32_t>(settings.rays)});
+                     .samples = static_cast<std::uint32_t>(settings.even_rays)});
         render::CameraPathBuffer buffer;
         double light = 0.0;
         while (paths.fill(buffer)) {
@@ -88,7 +88,7 @@ class PointCamera {
                 light += buffer.weight[i] * camera_->film().rgb_weights[buffer.wavelength[i]].y;
             }
         }
-        return light / settings.rays;
+        return light / settings.even_rays;
     }
 
   private:
@@ -218,28 +218,53 @@ Squares squares_of(const PointSums& sums) {
 /// By repetition and point.
 using Probed = std::vector<std::vector<PointSums>>;
 
-/// `statistic` of what all repetitions found together, by the jackknife over them.
-Measured jackknifed(const Probed& probed, const std::function<double(const std::vector<PointSums>&)>& statistic) {
-    const auto pooled = [&](std::size_t left_out) {
-        std::vector<PointSums> all(probed.front().size());
-        for (std::size_t r = 0; r < probed.size(); ++r) {
-            for (std::size_t p = 0; r != left_out && p < all.size(); ++p) {
-                all[p] += probed[r][p];
-            }
-        }
-        return statistic(all);
-    };
-    const auto n = static_cast<double>(probed.size());
-    std::vector<double> without;
+/// What all repetitions but one found together.
+std::vector<PointSums> pooled(const Probed& probed, int left_out) {
+    std::vector<PointSums> all(probed.front().size());
     for (std::size_t r = 0; r < probed.size(); ++r) {
-        without.push_back(pooled(r));
+        for (std::size_t p = 0; static_cast<int>(r) != left_out && p < all.size(); ++p) {
+            all[p] += probed[r][p];
+        }
     }
-    const double mean = std::accumulate(without.begin(), without.end(), 0.0) / n;
-    double variance = 0.0;
-    for (const double value : without) {
-        variance += (n - 1.0) / n * (value - mean) * (value - mean);
+    return all;
+}
+
+/// `probe(point, repetition)` of all of them.
+template <class Probe>
+Probed probed_by(const std::vector<ProbePoint>& points, const ProbeSettings& settings, const Probe& probe) {
+    Probed probed(static_cast<std::size_t>(settings.repetitions), std::vector<PointSums>(points.size()));
+    parallel_for(static_cast<int>(points.size()), settings.threads, [&](int p) {
+        for (int r = 0; r < settings.repetitions; ++r) {
+            probed[static_cast<std::size_t>(r)][static_cast<std::size_t>(p)] =
+                probe(points[static_cast<std::size_t>(p)], r);
+        }
+    });
+    return probed;
+}
+
+PointSums look(const render::Camera& camera, const ProbePoint& point, const ProbeSettings& settings, int repetition) {
+    const PointCamera there(camera, point);
+    const render::PixelSampler numbers(settings.seed + static_cast<std::uint64_t>(repetition), point.pixel);
+    PointSums sums;
+    for (int i = 0; i < settings.rays; ++i) {
+        const auto number = numbers.point(static_cast<std::uint32_t>(i));
+        add_model_ray(there, number[0], number[1], number[2], sums);
     }
-    return {n * pooled(probed.size()) - (n - 1.0) * mean, std::sqrt(variance)};
+    sums.even_model = there.even_light(settings, repetition);
+    return sums;
+}
+
+PointLook look_of(const PointSums& sums) {
+    PointLook look;
+    for (std::size_t c = 0; c < 3; ++c) {
+        look.light[c] = sums.model[c].light;
+        if (look.light[c] > 0.0) {
+            look.centroid[c] = sums.model[c].centroid();
+            look.spread_px[c] = sums.model[c].spread();
+        }
+    }
+    look.even_light = sums.even_model;
+    return look;
 }
 
 Measured scaled(Measured measured, double factor) {
@@ -247,6 +272,20 @@ Measured scaled(Measured measured, double factor) {
 }
 
 }  // namespace
+
+Measured jackknifed(int repetitions, const std::function<double(int left_out)>& of) {
+    std::vector<double> without(static_cast<std::size_t>(repetitions));
+    for (int r = 0; r < repetitions; ++r) {
+        without[static_cast<std::size_t>(r)] = of(r);
+    }
+    const auto n = static_cast<double>(repetitions);
+    const double mean = std::accumulate(without.begin(), without.end(), 0.0) / n;
+    double variance = 0.0;
+    for (const double value : without) {
+        variance += (n - 1.0) / n * (value - mean) * (value - mean);
+    }
+    return {n * of(repetitions) - (n - 1.0) * mean, std::sqrt(variance)};
+}
 
 Measured root(const Measured& square) {
     const double value = std::sqrt(std::max(0.0, square.value));
@@ -289,51 +328,34 @@ std::vector<ProbePoint> probe_points(const render::Camera& exact, int count) {
     return points;
 }
 
-std::vector<PointLook> look_at_points(const render::Camera& camera, const std::vector<ProbePoint>& points,
-                                      const ProbeSettings& settings) {
-    std::vector<PointLook> looks(points.size());
-    parallel_for(static_cast<int>(points.size()), settings.threads, [&](int p) {
-        const ProbePoint& point = points[static_cast<std::size_t>(p)];
-        const PointCamera there(camera, point);
-        const render::PixelSampler numbers(settings.seed, point.pixel);
-        PointSums sums;
-        for (int i = 0; i < settings.rays; ++i) {
-            const auto number = numbers.point(static_cast<std::uint32_t>(i));
-            add_model_ray(there, number[0], number[1], number[2], sums);
-        }
-        PointLook& look = looks[static_cast<std::size_t>(p)];
-        for (std::size_t c = 0; c < 3; ++c) {
-            look.light[c] = sums.model[c].light;
-            if (look.light[c] > 0.0) {
-                look.centroid[c] = sums.model[c].centroid();
-                look.spread_px[c] = sums.model[c].spread();
-            }
-        }
-        look.even_light = there.even_light(settings, 0);
-    });
+PointLooks look_at_points(const render::Camera& camera, const std::vector<ProbePoint>& points,
+                          const ProbeSettings& settings) {
+    const Probed probed =
+        probed_by(points, settings, [&](const ProbePoint& point, int r) { return look(camera, point, settings, r); });
+    PointLooks looks(probed.size() + 1);
+    for (std::size_t left_out = 0; left_out < looks.size(); ++left_out) {
+        std::ranges::transform(pooled(probed, static_cast<int>(left_out)), std::back_inserter(looks[left_out]),
+                               look_of);
+    }
     return looks;
 }
 
 FieldErrors field_errors(const render::Camera& exact, const render::Camera& model,
                          const std::vector<ProbePoint>& points, const ProbeSettings& settings) {
-    Probed probed(static_cast<std::size_t>(settings.repetitions), std::vector<PointSums>(points.size()));
-    parallel_for(static_cast<int>(points.size()), settings.threads, [&](int p) {
-        for (int r = 0; r < settings.repetitions; ++r) {
-            probed[static_cast<std::size_t>(r)][static_cast<std::size_t>(p)] =
-                probe(exact, model, points[static_cast<std::size_t>(p)], settings, r);
-        }
-    });
+    const Probed probed = probed_by(
+        points, settings, [&](const ProbePoint& point, int r) { return probe(exact, model, point, settings, r); });
     const double um = 1e3 * exact.sensor().pixel_pitch_mm;
     const auto of_point = [&](std::size_t p, double Squares::*what) {
-        return jackknifed(probed, [&](const std::vector<PointSums>& all) { return squares_of(all[p]).*what; });
+        return jackknifed(settings.repetitions,
+                          [&](int left_out) { return squares_of(pooled(probed, left_out)[p]).*what; });
     };
     const auto of_frame = [&](double Squares::*what) {
-        return jackknifed(probed, [&](const std::vector<PointSums>& all) {
+        return jackknifed(settings.repetitions, [&](int left_out) {
             Squares sum;
-            for (const PointSums& at : all) {
+            for (const PointSums& at : pooled(probed, left_out)) {
                 sum += squares_of(at);
             }
-            return sum.*what / static_cast<double>(std::max<std::size_t>(1, all.size()));
+            return sum.*what / static_cast<double>(std::max<std::size_t>(1, points.size()));
         });
     };
     FieldErrors errors;

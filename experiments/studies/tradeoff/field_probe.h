@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/render/camera/camera.h"
@@ -25,7 +26,8 @@ struct ProbePoint {
 std::vector<ProbePoint> probe_points(const render::Camera& exact, int count);
 
 struct ProbeSettings {
-    int rays = 256;  // of a point and a repetition, in all of the camera's wavelengths
+    int rays = 256;       // of a point and a repetition, in all of the camera's wavelengths
+    int even_rays = 512;  // the same, of what an even world gives
     int repetitions = 4;
     std::uint64_t seed = 0;
     int threads = 0;
@@ -39,8 +41,15 @@ struct PointLook {
     std::array<double, 3> spread_px{};
     double even_light = 0.0;
 };
-std::vector<PointLook> look_at_points(const render::Camera& camera, const std::vector<ProbePoint>& points,
-                                      const ProbeSettings& settings);
+
+/// In the order of the points: in [r] without repetition r, in the last of all repetitions.
+using PointLooks = std::vector<std::vector<PointLook>>;
+PointLooks look_at_points(const render::Camera& camera, const std::vector<ProbePoint>& points,
+                          const ProbeSettings& settings);
+
+/// By the jackknife over repetitions (Miller 1974): `of(r)` is a statistic of what all but repetition r found together,
+/// `of(repetitions)` that of all.
+Measured jackknifed(int repetitions, const std::function<double(int left_out)>& of);
 
 /// What a model does otherwise than the exact camera at a point of the frame, and over the frame.
 struct FieldError {
@@ -68,7 +77,7 @@ void fields(JsonArchive& json, FieldErrors& errors);
 
 /// Both cameras meet light paths, and stand at the same place with the same sensor and response. All rays of a pinhole
 /// land where its one ray of the point does. Roots of squares are freed of what noise adds to them by the jackknife
-/// over the repetitions, which also gives the standard errors (Miller 1974); the points are the same in all of them.
+/// over the repetitions, which also gives the standard errors; the points are the same in all of them.
 FieldErrors field_errors(const render::Camera& exact, const render::Camera& model,
                          const std::vector<ProbePoint>& points, const ProbeSettings& settings);
 

@@ -19,7 +19,7 @@ struct PilotSettings {
     int smooth_samples = 6;      // where these do not tell
     int seeds = 2;
     int points = 24;
-    ProbeSettings probe{.rays = 96, .repetitions = 2};
+    ProbeSettings probe{.rays = 24, .even_rays = 128, .repetitions = 8};
     Cache cache{};
 };
 

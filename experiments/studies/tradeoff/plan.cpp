@@ -101,7 +101,8 @@ void add_smoothing(const Pilot& pilot, const PlannedRender& planned, const std::
         if (std::ranges::count(passes, smooth.pass) == 0) {
             continue;
         }
-        const PassFilms films = pass_films(pilot, smooth.pass, pilot.settings().seeds, pilot.settings().smooth_samples);
+        const auto samples = static_cast<std::uint32_t>(pilot.settings().smooth_samples);
+        const PassFilms films = pass_films(pilot, smooth.pass, pilot.settings().seeds, {.first = 0, .end = samples});
         const Contribution lost = veil_contribution(pilot, films.smoothness(pilot).lost(smooth.sigma_px));
         add(error.ev, lost.ev);
         add(error.ciede2000, lost.ciede2000);

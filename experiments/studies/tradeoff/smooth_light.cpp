@@ -114,30 +114,45 @@ SmoothLight PassFilms::smoothness(const Pilot& pilot) const {
             static_cast<double>(pilot.setup().camera.sensor.width) / rgb.front().width};
 }
 
-PassFilms pass_films(const Pilot& pilot, const std::string& pass, int first_seed, int samples) {
+void PassFilms::add(const PassFilms& more) {
+    const double part = static_cast<double>(more.samples) / (samples + more.samples);
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        std::ranges::transform(rgb[i].pixels, more.rgb[i].pixels, rgb[i].pixels.begin(),
+                               [&](float had, float found) { return std::lerp(had, found, static_cast<float>(part)); });
+    }
+    ns_per_sample = std::lerp(ns_per_sample, more.ns_per_sample, part);
+    samples += more.samples;
+}
+
+PassFilms pass_films(const Pilot& pilot, const std::string& pass, int first_seed, const render::SampleRange& samples) {
     const PilotSettings& settings = pilot.settings();
     const render::SceneSetup small = with_pixels(pilot.setup(), settings.smooth_pixels);
     render::PreparedScene scene(small, render::PixelFilter{}, settings.cache);
-    PassFilms films;
+    PassFilms films{.rgb = {}, .samples = static_cast<int>(samples.end - samples.first)};
     for (std::size_t i = 0; i < films.rgb.size(); ++i) {
         const std::uint64_t seed = settings.probe.seed + static_cast<std::uint64_t>(first_seed) + i;
         const std::vector<render::Render> renders = scene.render(std::vector{pass}, seed, false, false);
-        const render::SampleRange range{.first = 0, .end = static_cast<std::uint32_t>(samples)};
         const double start = processor_seconds();
-        films.rgb[i] = render::film_rgb(render::render_film(renders.front(), range, settings.probe.threads));
-        const double taken = static_cast<double>(small.camera.sensor.width) * small.camera.sensor.height * samples *
-                             static_cast<double>(films.rgb.size());
+        films.rgb[i] = render::film_rgb(render::render_film(renders.front(), samples, settings.probe.threads));
+        const double taken = static_cast<double>(small.camera.sensor.width) * small.camera.sensor.height *
+                             films.samples * static_cast<double>(films.rgb.size());
         films.ns_per_sample += 1e9 * (processor_seconds() - start) / taken;
     }
     return films;
 }
 
 const PassFilms& KeptFilms::of(const std::string& pass, int samples) {
-    const std::pair key(pass, samples);
-    if (!films_.contains(key)) {
-        films_.emplace(key, pass_films(*pilot_, pass, 0, samples));
+    const auto kept = films_.find(pass);
+    const int has = kept == films_.end() ? 0 : kept->second.samples;
+    if (has < samples) {
+        const PassFilms more = pass_films(
+            *pilot_, pass, 0, {.first = static_cast<std::uint32_t>(has), .end = static_cast<std::uint32_t>(samples)});
+        if (kept == films_.end()) {
+            return films_.emplace(pass, more).first->second;
+        }
+        kept->second.add(more);
     }
-    return films_.at(key);
+    return kept->second;
 }
 
 }  // namespace lensproof::studies

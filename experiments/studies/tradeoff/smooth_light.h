@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "experiments/studies/tradeoff/pilot.h"
 
@@ -44,18 +43,21 @@ class SmoothLight {
 /// A pass of a pilot's scene by itself, of more pixels than the pilot's.
 struct PassFilms {
     SmoothLight::Films rgb;
+    int samples = 0;             // of a pixel and a seed
     double ns_per_sample = 0.0;  // of one core
+
+    /// Other samples of the same pass and seeds.
+    void add(const PassFilms& more);
 
     /// Their light over all that goes straight. Its error is what the films differ by, pixel by pixel.
     [[nodiscard]] Measured share(const Pilot& pilot) const;
     [[nodiscard]] SmoothLight smoothness(const Pilot& pilot) const;
 };
 
-/// With seeds from `first_seed` on, `samples` of a pixel and a seed. Throws InputError where the camera has no such
-/// light.
-PassFilms pass_films(const Pilot& pilot, const std::string& pass, int first_seed, int samples);
+/// With seeds from `first_seed` on. Throws InputError where the camera has no such light.
+PassFilms pass_films(const Pilot& pilot, const std::string& pass, int first_seed, const render::SampleRange& samples);
 
-/// Those with seeds from 0 on, rendered when they are first asked for.
+/// Those with seeds from 0 on, of as many samples as were asked for yet: what is missing is rendered and added.
 class KeptFilms {
   public:
     explicit KeptFilms(const Pilot& pilot) : pilot_(&pilot) {}
@@ -63,7 +65,7 @@ class KeptFilms {
 
   private:
     const Pilot* pilot_;
-    std::map<std::pair<std::string, int>, PassFilms> films_;
+    std::map<std::string, PassFilms> films_;
 };
 
 /// How a pass is rendered whose light is smooth: spread by the widest that may be of these, px, and with so many fewer

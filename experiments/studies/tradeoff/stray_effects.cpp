@@ -135,7 +135,7 @@ Contribution airy_core(const Pilot& pilot) {
     constexpr double kSigma = 0.42;
     const double um = kSigma * 0.55 * pilot.setup().camera.f_number;
     const double px = std::numbers::sqrt2 * 1e-3 * um / pilot.setup().camera.sensor.pixel_pitch_mm;
-    return blur_effect(pilot, "diffraction", [px](int, int) { return px; }).contribution;
+    return blur_effect(pilot, "diffraction", [px](int, int) { return px; }, {px, 0.0}).contribution;
 }
 
 }  // namespace

@@ -71,22 +71,30 @@ TEST(Plan, RendersKeepTheirTolerance) {
     }
 }
 
-// Predicted by doing it to a pilot, measured by rendering models with it and without, with other seeds: vignetting to a
-// fifth of itself. The one is the rms over pixels of a curve through rings of few points, the other that over the
-// points.
+// Predicted by a few rays, measured by models with it and without, with other seeds: a pinhole's light is the closed
+// form, its profile's the integral over the lens's region. Two standard errors of eight repetitions hold the difference
+// in 91 of 100 cases (Student's t), three in 98; the profile's light is known to 1e-3 EV.
 TEST(EffectAccount, MeasuresWhatWasPredicted) {
-    const render::SceneSetup scene = wall("tessar", 2.8, 20.0);
     PilotSettings other{.samples = 64};
     other.probe.seed = 1000;
-    const std::vector<EffectAccount> accounts = account_effects(scene, plan_render(scene, {.px = 30.0}, {}), other);
-    const auto field = std::ranges::find(accounts, "distortion, lateral-colour, vignetting", &EffectAccount::effects);
-    ASSERT_NE(field, accounts.end());
-    EXPECT_GT(field->predicted.ev.value, 0.1);
-    EXPECT_NEAR(field->measured.ev.value, field->predicted.ev.value, 0.2 * field->predicted.ev.value);
-    const auto ghosts = std::ranges::find(accounts, "ghosts", &EffectAccount::effects);
-    ASSERT_NE(ghosts, accounts.end());
-    EXPECT_LT(ghosts->predicted.ev.standard_error, 0.5 * ghosts->predicted.ev.value);
-    EXPECT_TRUE(covers(ghosts->predicted.ev, ghosts->measured.ev, ghosts->is_bound));
+    const auto accounts_of = [&](const render::SceneSetup& scene) {
+        return account_effects(scene, plan_render(scene, {.px = 30.0}, {}), other);
+    };
+    const auto named = [](const std::vector<EffectAccount>& accounts, const char* effects) {
+        return *std::ranges::find(accounts, effects, &EffectAccount::effects);
+    };
+    const std::vector<EffectAccount> tessar = accounts_of(wall("tessar", 2.8, 20.0));
+    const std::vector<EffectAccount> gauss = accounts_of(wall("double-gauss-lowenthal", 2.0, 12.0));
+    for (const std::vector<EffectAccount>& accounts : {tessar, gauss}) {
+        const EffectAccount field = named(accounts, "distortion, lateral-colour, vignetting");
+        const Measured& predicted = field.predicted.ev;
+        EXPECT_GT(predicted.value, 0.05);
+        EXPECT_LT(predicted.standard_error, 0.05 * predicted.value);
+        EXPECT_NEAR(field.measured.ev.value, predicted.value, 3.0 * predicted.standard_error + 1e-3);
+    }
+    const EffectAccount ghosts = named(tessar, "ghosts");
+    EXPECT_LT(ghosts.predicted.ev.standard_error, 0.5 * ghosts.predicted.ev.value);
+    EXPECT_TRUE(covers(ghosts.predicted.ev, ghosts.measured.ev, ghosts.is_bound));
 }
 
 // A ray's transverse aberration in third order goes with the cube, the square and the first power of the aperture, and
