@@ -42,7 +42,7 @@ struct RegionOutline {
 /// The outline about a point near the middle of the region, or between there and its edge where it is not star-shaped
 /// about the middle (a crescent). The last light of a fisheye is a long, bent strip, star-shaped about no point: it is
 /// straightened by a shear across x, which keeps areas. Pieces are halved until the estimate of the area's error
-/// (Piessens et al., QUADPACK 1983) is below 1e-11.
+/// (Piessens et al., QUADPACK 1983) is below 1e-11, or no more than the rounding of the region's numbers.
 RegionOutline region_outline(const Region& region, const RegionSearch& search);
 
 /// A point of a region and the area that it stands for.
