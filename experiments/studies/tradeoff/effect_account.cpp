@@ -8,6 +8,7 @@
 
 #include "engine/base/input_error.h"
 #include "experiments/studies/tradeoff/picture_error.h"
+#include "experiments/studies/tradeoff/spot_check.h"
 
 namespace lensproof::studies {
 
@@ -110,8 +111,11 @@ class Accountant {
         const render::Camera camera_without(without.camera, without.spectral, {}, settings.cache, true);
         const render::Camera camera_with(with.camera, with.spectral, {}, settings.cache, true);
         const FieldError field = field_errors(camera_with, camera_without, pilot_.points(), settings.probe).frame;
-        const PictureErrors seen =
-            picture_errors(pilot_.render(without, {}, 0).rgb, pilot_.render(with, {}, 0).rgb, settings.probe.threads);
+        const SpotCheckSettings windows{
+            .samples = settings.samples, .threads = settings.probe.threads, .cache = settings.cache};
+        const std::uint64_t seed = settings.probe.seed;
+        const PictureErrors seen = picture_errors(window_pictures(without, seed, windows),
+                                                  window_pictures(with, seed + 2, windows), settings.probe.threads);
         // Points are in focus: there a thin lens has no discs.
         const bool is_defocus = pair.effects.front() == "defocus";
         return {.px = is_defocus ? Measured{} : together(field.image_px, field.blur_px),

@@ -18,10 +18,11 @@ struct EffectAccount {
 void fields(JsonArchive& json, Contribution& contribution);
 void fields(JsonArchive& json, EffectAccount& account);
 
-/// By pictures of the settings' seeds, which the plan has not seen: defocus as what a thin lens makes otherwise than a
-/// pinhole; distortion, lateral colour and vignetting as what the profile makes of a pinhole; aberrations as what the
-/// lens itself makes otherwise than a thin lens with its profile; stray light by its passes; and fewer wavelengths and
-/// scatterings, where the plan has fewer. Effects that nothing renders apart are not in it: cos⁴ and losses.
+/// By pictures of the settings' seeds, which the plan has not seen, and of the scene's own pixels (`window_pictures`):
+/// defocus as what a thin lens makes otherwise than a pinhole; distortion, lateral colour and vignetting as what the
+/// profile makes of a pinhole; aberrations as what the lens itself makes otherwise than a thin lens with its profile.
+/// By pictures of the pilot's pixels: stray light by its passes; and fewer wavelengths and scatterings, where the plan
+/// has fewer. Effects that nothing renders apart are not in it: cos⁴ and losses.
 std::vector<EffectAccount> account_effects(const render::SceneSetup& setup, const Plan& plan,
                                            const PilotSettings& settings);
 

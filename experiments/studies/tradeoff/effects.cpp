@@ -113,7 +113,7 @@ double outward(const Pilot& pilot, std::size_t point, const Vec2d& shift) {
 void add_geometry(const SeenPoints& seen, std::vector<Effect>& effects) {
     using Looks = std::vector<PointLook>;
     const Pilot& pilot = seen.pilot;
-    /// Only of points that both cameras see.
+    // Only of points that both cameras see.
     const auto lit = [](const auto& of) -> PointNumber {
         return [of](const Looks& exact, const Looks& thin, std::size_t i) {
             return exact[i].light[1] > 0.0 && thin[i].light[1] > 0.0 ? std::optional<double>(of(exact, thin, i))

@@ -215,31 +215,26 @@ Squares squares_of(const PointSums& sums) {
     return squares;
 }
 
-/// By repetition and point.
-using Probed = std::vector<std::vector<PointSums>>;
-
-/// What all repetitions but one found together.
-std::vector<PointSums> pooled(const Probed& probed, int left_out) {
-    std::vector<PointSums> all(probed.front().size());
-    for (std::size_t r = 0; r < probed.size(); ++r) {
-        for (std::size_t p = 0; static_cast<int>(r) != left_out && p < all.size(); ++p) {
-            all[p] += probed[r][p];
-        }
-    }
-    return all;
-}
+/// Of the points in [r] what all repetitions but r found together, in the last what all did.
+using PooledSums = std::vector<std::vector<PointSums>>;
 
 /// `probe(point, repetition)` of all of them.
 template <class Probe>
-Probed probed_by(const std::vector<ProbePoint>& points, const ProbeSettings& settings, const Probe& probe) {
-    Probed probed(static_cast<std::size_t>(settings.repetitions), std::vector<PointSums>(points.size()));
-    parallel_for(static_cast<int>(points.size()), settings.threads, [&](int p) {
-        for (int r = 0; r < settings.repetitions; ++r) {
-            probed[static_cast<std::size_t>(r)][static_cast<std::size_t>(p)] =
-                probe(points[static_cast<std::size_t>(p)], r);
+PooledSums pooled(const std::vector<ProbePoint>& points, const ProbeSettings& settings, const Probe& probe) {
+    const auto repetitions = static_cast<std::size_t>(settings.repetitions);
+    PooledSums sums(repetitions + 1, std::vector<PointSums>(points.size()));
+    parallel_for(static_cast<int>(points.size()), settings.threads, [&](int i) {
+        const auto p = static_cast<std::size_t>(i);
+        for (std::size_t r = 0; r < repetitions; ++r) {
+            const PointSums found = probe(points[p], static_cast<int>(r));
+            for (std::size_t left_out = 0; left_out < sums.size(); ++left_out) {
+                if (left_out != r) {
+                    sums[left_out][p] += found;
+                }
+            }
         }
     });
-    return probed;
+    return sums;
 }
 
 PointSums look(const render::Camera& camera, const ProbePoint& point, const ProbeSettings& settings, int repetition) {
@@ -330,29 +325,28 @@ std::vector<ProbePoint> probe_points(const render::Camera& exact, int count) {
 
 PointLooks look_at_points(const render::Camera& camera, const std::vector<ProbePoint>& points,
                           const ProbeSettings& settings) {
-    const Probed probed =
-        probed_by(points, settings, [&](const ProbePoint& point, int r) { return look(camera, point, settings, r); });
-    PointLooks looks(probed.size() + 1);
-    for (std::size_t left_out = 0; left_out < looks.size(); ++left_out) {
-        std::ranges::transform(pooled(probed, static_cast<int>(left_out)), std::back_inserter(looks[left_out]),
-                               look_of);
+    const PooledSums all =
+        pooled(points, settings, [&](const ProbePoint& point, int r) { return look(camera, point, settings, r); });
+    PointLooks looks;
+    for (const std::vector<PointSums>& sums : all) {
+        std::ranges::transform(sums, std::back_inserter(looks.emplace_back()), look_of);
     }
     return looks;
 }
 
 FieldErrors field_errors(const render::Camera& exact, const render::Camera& model,
                          const std::vector<ProbePoint>& points, const ProbeSettings& settings) {
-    const Probed probed = probed_by(
+    const PooledSums sums = pooled(
         points, settings, [&](const ProbePoint& point, int r) { return probe(exact, model, point, settings, r); });
     const double um = 1e3 * exact.sensor().pixel_pitch_mm;
     const auto of_point = [&](std::size_t p, double Squares::*what) {
         return jackknifed(settings.repetitions,
-                          [&](int left_out) { return squares_of(pooled(probed, left_out)[p]).*what; });
+                          [&](int left_out) { return squares_of(sums[static_cast<std::size_t>(left_out)][p]).*what; });
     };
     const auto of_frame = [&](double Squares::*what) {
         return jackknifed(settings.repetitions, [&](int left_out) {
             Squares sum;
-            for (const PointSums& at : pooled(probed, left_out)) {
+            for (const PointSums& at : sums[static_cast<std::size_t>(left_out)]) {
                 sum += squares_of(at);
             }
             return sum.*what / static_cast<double>(std::max<std::size_t>(1, points.size()));
@@ -378,11 +372,9 @@ FieldErrors field_errors(const render::Camera& exact, const render::Camera& mode
                     .mtf_sagittal = root(of_frame(&Squares::mtf_sagittal)),
                     .mtf = root(of_frame(&Squares::mtf))};
     double light = 0.0;
-    for (const std::vector<PointSums>& repetition : probed) {
-        for (const PointSums& at : repetition) {
-            errors.lost += at.lost_light;
-            light += at.lost_light + at.ray_light;
-        }
+    for (const PointSums& at : sums.back()) {
+        errors.lost += at.lost_light;
+        light += at.lost_light + at.ray_light;
     }
     errors.lost = light > 0.0 ? errors.lost / light : 0.0;
     return errors;

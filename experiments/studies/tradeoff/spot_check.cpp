@@ -78,16 +78,6 @@ Image render_windows(const render::Render& render, const std::vector<render::Pix
     return image;
 }
 
-std::vector<Image> render_seeds(const render::SceneSetup& setup, const std::vector<render::PixelRect>& windows,
-                                std::uint64_t first_seed, const SpotCheckSettings& settings) {
-    const render::PreparedScene scene(setup, render::PixelFilter{}, settings.cache);
-    std::vector<Image> pictures;
-    for (std::uint64_t seed = first_seed; seed < first_seed + 2; ++seed) {
-        pictures.push_back(render_windows(scene.render(seed, false), windows, settings));
-    }
-    return pictures;
-}
-
 }  // namespace
 
 SpotCheckSettings SpotCheckSettings::for_render(const render::SceneSetup& setup) {
@@ -103,6 +93,17 @@ SpotCheckSettings SpotCheckSettings::for_render(const render::SceneSetup& setup)
     return settings;
 }
 
+std::vector<Image> window_pictures(const render::SceneSetup& setup, std::uint64_t first_seed,
+                                   const SpotCheckSettings& settings) {
+    const std::vector<render::PixelRect> windows = windows_of(setup.camera.sensor, settings);
+    const render::PreparedScene scene(setup, render::PixelFilter{}, settings.cache);
+    std::vector<Image> pictures;
+    for (std::uint64_t seed = first_seed; seed < first_seed + 2; ++seed) {
+        pictures.push_back(render_windows(scene.render(seed, false), windows, settings));
+    }
+    return pictures;
+}
+
 Plan spot_checked(Plan plan, const render::SceneSetup& setup, const SpotCheckSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     const render::SceneSetup full = on_rung(setup, {.name = kReferenceRung});
@@ -110,14 +111,13 @@ Plan spot_checked(Plan plan, const render::SceneSetup& setup, const SpotCheckSet
     if (is_full()) {
         return plan;
     }
-    const std::vector<render::PixelRect> windows = windows_of(setup.camera.sensor, settings);
-    const std::vector<Image> judge = render_seeds(full, windows, settings.seed, settings);
+    const std::vector<Image> judge = window_pictures(full, settings.seed, settings);
     const std::vector<PlannedRender> others = dearer_renders(plan.render, full);
-    plan.spots.pixels = static_cast<int>(windows.size()) * windows.front().pixels();
+    plan.spots.pixels = judge.front().width * judge.front().height;
     for (std::size_t i = 0; !is_full(); ++i) {
         try {
             const std::vector<Image> planned =
-                render_seeds(planned_setup(setup, plan.render), windows, settings.seed + 2, settings);
+                window_pictures(planned_setup(setup, plan.render), settings.seed + 2, settings);
             const PictureErrors found = picture_errors(planned, judge, settings.threads);
             plan.spots.error = {.px = {},
                                 .ev = {std::abs(found.exposure_ev.value), found.exposure_ev.standard_error},
