@@ -86,7 +86,7 @@ constexpr bool reflect_at_sensor(const OfLens& lens, const StrayMirrors<T>& mirr
 
 /// Where a ray has come to a surface: what decides how it goes on.
 template <class T>
-struct AtMeeting {
+struct SurfaceMeeting {
     Vec3<T> direction{};  // of the ray, in the surface's own frame
     Vec3<T> normal{};     // of unit length, turned along the ray
     T cos_incidence = T(0);
@@ -95,7 +95,7 @@ struct AtMeeting {
 };
 
 /// Takes `ray` to surface `index`, forward or back, where it is to go on as `what` says, by `go_on(const
-/// AtMeeting<T>&)`, which answers whether it does: a function that is called from here, so that all this stays in
+/// SurfaceMeeting<T>&)`, which answers whether it does: a function that is called from here, so that all this stays in
 /// single variables. Returns the status there, as an event of `trace` has it, and whether the ray goes on.
 template <Rims rims, class OfLens, class T, class GoOn>
 constexpr std::pair<RayStatus, bool> come_to_surface(const OfLens& lens, int index, bool forward, AtSurface what,
@@ -172,14 +172,14 @@ constexpr std::pair<RayStatus, bool> come_to_surface(const OfLens& lens, int ind
         is_shaped
             ? refract(direction, normal, meeting.cos_incidence, meeting.sin2_incidence, ratio)
             : refract_at_sphere(direction, point, c, heading, meeting.cos_incidence, meeting.sin2_incidence, ratio);
-    const bool goes_on = go_on(AtMeeting<T>{direction, normal, meeting.cos_incidence, open, bent});
+    const bool goes_on = go_on(SurfaceMeeting<T>{direction, normal, meeting.cos_incidence, open, bent});
     return {goes_on ? here : ray.status, goes_on};
 }
 
 /// Of the light that comes to the surface there, what goes back from it: from the blades of a stop, if it has them.
 template <class OfLens, class T>
 constexpr T reflected_at(const OfLens& lens, int index, bool forward, const StrayMirrors<T>& mirrors,
-                         const AtMeeting<T>& at) {
+                         const SurfaceMeeting<T>& at) {
     const TraceSurface<T>& surface = lens.surfaces[static_cast<std::size_t>(index)];
     return reflects_by_blades(surface) ? T(mirrors.blades * (T(1) - at.open))
                                        : T(at.open * surface_reflectance(surface, special_of(lens, surface), forward,
@@ -188,7 +188,7 @@ constexpr T reflected_at(const OfLens& lens, int index, bool forward, const Stra
 
 /// Sends `ray`, which has come there, back.
 template <class OfLens, class T>
-constexpr void turn_back(const OfLens& lens, int index, const AtMeeting<T>& at, TravellingRay<T>& ray) {
+constexpr void turn_back(const OfLens& lens, int index, const SurfaceMeeting<T>& at, TravellingRay<T>& ray) {
     const typename OfLens::Special* special = special_of(lens, lens.surfaces[static_cast<std::size_t>(index)]);
     const Vec3<T> direction = reflect(at.direction, at.normal, at.cos_incidence);
     ray.direction = special != nullptr ? special->from_own(direction) : direction;
@@ -196,8 +196,8 @@ constexpr void turn_back(const OfLens& lens, int index, const AtMeeting<T>& at, 
 
 /// Sends `ray`, which has come there, through the surface; false, and the ray is ended, where all of it is reflected.
 template <class OfLens, class T>
-[[gnu::always_inline]] constexpr bool pass_surface(const OfLens& lens, int index, bool forward, const AtMeeting<T>& at,
-                                                   TravellingRay<T>& ray) {
+[[gnu::always_inline]] constexpr bool pass_surface(const OfLens& lens, int index, bool forward,
+                                                   const SurfaceMeeting<T>& at, TravellingRay<T>& ray) {
     if (!at.bent.transmitted) {
         ray.end(RayStatus::total_internal_reflection, index);
         return false;
@@ -223,7 +223,7 @@ template <class OfLens, class T>
 template <Rims rims, class OfLens, class T>
 constexpr std::pair<RayStatus, bool> run_to_surface(const OfLens& lens, int index, bool forward, AtSurface what,
                                                     const StrayMirrors<T>& mirrors, TravellingRay<T>& ray) {
-    return come_to_surface<rims>(lens, index, forward, what, ray, [&](const AtMeeting<T>& at) {
+    return come_to_surface<rims>(lens, index, forward, what, ray, [&](const SurfaceMeeting<T>& at) {
         if (what == AtSurface::pass) {
             return pass_surface(lens, index, forward, at, ray);
         }

@@ -128,9 +128,9 @@ class StrayWalk {
         int surface = 0;
         bool forward = true;
         double distance = 0.0;
-        TravellingRay<double> come;  // to the surface, and not through it yet
+        TravellingRay<double> arrived;  // at the surface, and not through it yet
         bool goes_on = true;
-        AtMeeting<double> meeting;
+        SurfaceMeeting<double> meeting{};
         double open = 1.0;  // of a stop's mask at the point
     };
 
@@ -144,32 +144,32 @@ class StrayWalk {
 
     /// The surface where the ray crosses it inside its rim.
     [[nodiscard]] std::optional<GlassMeeting> meet_surface(const Ray<double>& ray, int index, bool forward) const {
-        GlassMeeting meeting{
-            .surface = index, .forward = forward, .come = {.origin = ray.origin, .direction = ray.direction}};
-        const auto keep = [&](const AtMeeting<double>& at) {
-            meeting.meeting = at;
+        GlassMeeting found{
+            .surface = index, .forward = forward, .arrived = {.origin = ray.origin, .direction = ray.direction}};
+        const auto keep = [&](const SurfaceMeeting<double>& at) {
+            found.meeting = at;
             return true;
         };
         const auto [status, goes_on] =
-            come_to_surface<Rims::clip>(lens_, index, forward, AtSurface::pass, meeting.come, keep);
-        meeting.goes_on = goes_on;
+            come_to_surface<Rims::clip>(lens_, index, forward, AtSurface::pass, found.arrived, keep);
+        found.goes_on = goes_on;
         if (status == RayStatus::missed || status == RayStatus::clipped) {
             return std::nullopt;
         }
         const TraceSurface<double>& surface = lens_.surfaces[static_cast<std::size_t>(index)];
-        const Vec3d point = meeting.come.global().origin;
+        const Vec3d point = found.arrived.global().origin;
         if (const SpecialSurface<double>* special = special_of(lens_, surface)) {
             const Vec3d own = to_own_axes(lens_, surface, point);
             const bool is_beyond = own.x * own.x + own.y * own.y > surface.semi_diameter_squared;
-            meeting.open = is_beyond ? 0.0 : mask_transmittance(surface, *special, own.x, own.y);
+            found.open = is_beyond ? 0.0 : mask_transmittance(surface, *special, own.x, own.y);
             if (is_beyond) {
                 return std::nullopt;
             }
         } else if (status == RayStatus::stopped) {
             return std::nullopt;
         }
-        meeting.distance = dot(point - ray.origin, ray.direction);
-        return meeting;
+        found.distance = dot(point - ray.origin, ray.direction);
+        return found;
     }
 
     /// To the next surface or wall and on from it, or to an end.
@@ -298,9 +298,9 @@ class StrayWalk {
 
     std::optional<StrayEnd> leave_surface(StrayLight& light, const GlassMeeting& at) {
         const TraceSurface<double>& surface = lens_.surfaces[static_cast<std::size_t>(at.surface)];
-        light.weight *= at.come.optical_depth > 0.0 ? fading(at.come.optical_depth) : 1.0;
+        light.weight *= at.arrived.optical_depth > 0.0 ? fading(at.arrived.optical_depth) : 1.0;
         if (at.open < 1.0 && numbers_() >= at.open) {
-            light.ray.origin = at.come.global().origin;
+            light.ray.origin = at.arrived.global().origin;
             if (reflects_by_blades(surface) && numbers_() < mirrors_.blades) {
                 leave_mirror(light);
                 return std::nullopt;
@@ -310,21 +310,21 @@ class StrayWalk {
         if (!at.goes_on) {
             return StrayEnd::absorbed;
         }
-        TravellingRay<double> passed = at.come;
+        TravellingRay<double> passed = at.arrived;
         const bool is_through = pass_surface(lens_, at.surface, at.forward, at.meeting, passed);
         const double passing = is_through ? passed.at_surfaces / at.open : 0.0;
         const double reflecting = reflects_by_blades(surface)
                                       ? 0.0
                                       : reflected_at(lens_, at.surface, at.forward, mirrors_, at.meeting) / at.open;
         const auto reflected = [&] {
-            TravellingRay<double> back = at.come;
+            TravellingRay<double> back = at.arrived;
             turn_back(lens_, at.surface, at.meeting, back);
             return back.global();
         };
         const bool is_dusty = at.surface == 0 && barrel_.dust() != nullptr;
         const Vec3d along = is_dusty ? normalized(light.ray.direction - reflected().direction) : Vec3d{};  // the normal
-        if (is_dusty && at.forward && meets_dust(at.come.global().origin)) {
-            light.ray.origin = at.come.global().origin;
+        if (is_dusty && at.forward && meets_dust(at.arrived.global().origin)) {
+            light.ray.origin = at.arrived.global().origin;
             light.dust_normal = -1.0 * along;
             return leave_dust(light, -1.0 * along, false);
         }
