@@ -24,6 +24,7 @@ constexpr std::size_t kLongestName = 255;             // of attributes and of th
 constexpr std::array kBytesOfType = {4.0, 2.0, 4.0};  // of pixels: whole numbers, halves, floats
 constexpr double kMostChunkMib = 512.0;
 constexpr std::array kLinesOfChunk = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};  // by compression
+constexpr std::size_t kUnstatedCompression = 3;                               // which OpenEXR takes for ZIP
 
 /// Types of attributes whose values always take these bytes: OpenEXR's library reads as many, whatever size is stated,
 /// and takes what follows for the next attribute.
@@ -140,7 +141,7 @@ class ExrHeaders {
     std::optional<double> chunks_of_part() {
         double width = 0.0;
         double height = 0.0;
-        double lines = 1.0;
+        double lines = kLinesOfChunk.at(kUnstatedCompression);
         double stated = 0.0;
         double tile_area = 0.0;
         bool is_empty = true;

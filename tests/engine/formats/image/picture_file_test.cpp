@@ -212,14 +212,20 @@ TEST(PictureFile, HasPixelsOfATypeThatThereIs) {
     EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "a channel has pixels of type 3, expected 0, 1 or 2"));
 }
 
-// OpenEXR makes room for a chunk when it opens a part, of whatever width that states.
+// OpenEXR makes room for a chunk when it opens a part, of whatever width that states, and of 16 lines where it states
+// no compression.
 TEST(PictureFile, HasChunksThatOneMayMakeRoomFor) {
     const TestFolder folder;
     std::string bytes = bytes_of_form(folder, ".exr");
     const std::string window("dataWindow\0box2i\0\x10\0\0\0", 21);
-    bytes.replace(bytes.find(window) + window.size() + 8, 4, std::string("\xFF\xFF\xFF\x0F", 4));  // its right edge
-    const auto file = named(folder, "a.exr", bytes);
-    EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "MiB, expected at most 512"));
+    const auto complaint_of_width = [&](const std::string& right_edge) {
+        bytes.replace(bytes.find(window) + window.size() + 8, 4, right_edge);
+        const auto file = named(folder, "a.exr", bytes);
+        return complaint_about([&] { read_image(file); });
+    };
+    EXPECT_TRUE(says(complaint_of_width({"\xFF\xFF\xFF\x0F", 4}), "MiB, expected at most 512"));
+    bytes.replace(bytes.find("compression"), 1, "k");
+    EXPECT_TRUE(says(complaint_of_width({"\xFF\xFF\xFF\0", 4}), "MiB, expected at most 512"));
 }
 
 // No limit is beyond the machine; a 32 × 32 picture is within every one.
