@@ -12,13 +12,6 @@ namespace lensproof::render {
 
 namespace {
 
-/// Of a ray along the axis; 1 where it does not come through (a stop with a central obstruction).
-double axial_transmittance(const optics::TraceLens<double>& lens) {
-    const optics::TracedRay<double> axis =
-        optics::trace<optics::Direction::reverse>(lens, {{0.0, 0.0, lens.image_z}, {0.0, 0.0, -1.0}});
-    return axis.status == optics::RayStatus::ok ? axis.transmittance : 1.0;
-}
-
 GaussianOptics thin_lens(const optics::TraceLens<double>& lens, const optics::ParaxialData& data) {
     return {.film_z = lens.image_z - lens.surfaces.back().vertex_z - data.rear_principal_z,
             .pupil_z = 0.0,
@@ -53,6 +46,13 @@ GaussianOptics paraxial_lens(const optics::Lens& lens, const optics::TraceLens<d
 
 }  // namespace
 
+double axial_transmittance(const optics::Lens& lens, double wavelength_nm) {
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, wavelength_nm);
+    const optics::TracedRay<double> axis = optics::trace<optics::Direction::reverse>(
+        traced, {{0.0, 0.0, traced.image_z}, {0.0, 0.0, -lens.final_heading()}});
+    return axis.status == optics::RayStatus::ok ? axis.transmittance : 1.0;
+}
+
 GaussianOptics gaussian_optics(const optics::Lens& lens, LensModel model, double wavelength_nm) {
     const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, wavelength_nm);
     // What has one focal length has that of the line by which lenses are focused and stopped down.
@@ -66,7 +66,7 @@ GaussianOptics gaussian_optics(const optics::Lens& lens, LensModel model, double
     GaussianOptics camera =
         model == LensModel::paraxial ? paraxial_lens(lens, reference, data) : thin_lens(reference, data);
     camera.is_pinhole = model == LensModel::pinhole;
-    camera.transmittance = axial_transmittance(traced);
+    camera.transmittance = axial_transmittance(lens, wavelength_nm);
     return camera;
 }
 

@@ -24,6 +24,9 @@ struct GaussianOptics {
     friend bool operator==(const GaussianOptics&, const GaussianOptics&) = default;
 };
 
+/// Of a ray along a lens's axis; 1 where it does not come through (a stop with a central obstruction).
+double axial_transmittance(const optics::Lens& lens, double wavelength_nm);
+
 /// `lens`, stopped down and focused, as one of the ideal models at a wavelength. Throws InputError for a lens that has
 /// no focal length, and for a paraxial one whose exit pupil lies at infinity.
 GaussianOptics gaussian_optics(const optics::Lens& lens, LensModel model, double wavelength_nm);
