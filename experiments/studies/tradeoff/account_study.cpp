@@ -107,18 +107,25 @@ Json effects_json(const std::vector<EffectAccount>& accounts) {
     return rows;
 }
 
-/// A part of a contribution, and how the charts call it.
+/// A part of a contribution, how the charts call it, and how much of it is tolerated.
 struct ContributionPart {
     const char* name;
     const char* unit;
     Measured Contribution::*of;
+    double Tolerance::*tolerated;
 };
-constexpr std::array kParts = {ContributionPart{"px", "px", &Contribution::px},
-                               ContributionPart{"ev", "EV", &Contribution::ev},
-                               ContributionPart{"ciede2000", "CIEDE2000", &Contribution::ciede2000}};
+constexpr std::array kParts = {
+    ContributionPart{"px", "px", &Contribution::px, &Tolerance::px},
+    ContributionPart{"ev", "EV", &Contribution::ev, &Tolerance::ev},
+    ContributionPart{"ciede2000", "CIEDE2000", &Contribution::ciede2000, &Tolerance::ciede2000}};
+
+constexpr double kTooLittleToMatter = 0.02;  // of the tolerance
 
 /// Predictions of a part whose error bars hold what was measured, of all that are more than nothing.
-std::string coverage(const std::vector<PlannedOutcome>& outcomes, const ContributionPart& part, bool of_bounds) {
+std::string coverage(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes, const ContributionPart& part,
+                     bool of_bounds) {
+    const double tolerated = set.tolerance.*part.tolerated;
+    const double slack = std::isfinite(tolerated) ? kTooLittleToMatter * tolerated : 0.0;
     int all = 0;
     int held = 0;
     for (const PlannedOutcome& outcome : outcomes) {
@@ -126,7 +133,7 @@ std::string coverage(const std::vector<PlannedOutcome>& outcomes, const Contribu
             const Measured& predicted = account.predicted.*part.of;
             if (account.is_bound == of_bounds && predicted.value > 0.0) {
                 ++all;
-                held += covers(predicted, account.measured.*part.of, of_bounds) ? 1 : 0;
+                held += covers(predicted, account.measured.*part.of, of_bounds, slack) ? 1 : 0;
             }
         }
     }
@@ -244,9 +251,12 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
                                 .bytes = account_svg(set, outcomes)});
     for (const ContributionPart& part : kParts) {
         subject.facts.push_back(
-            {fmt::format("predictions in {} that hold what was measured, by two standard errors", part.unit),
-             coverage(outcomes, part, false)});
-        subject.facts.push_back({fmt::format("bounds in {} that hold it", part.unit), coverage(outcomes, part, true)});
+            {fmt::format(
+                 "predictions in {} that hold what was measured, by two standard errors or {:g} of what is tolerated",
+                 part.unit, kTooLittleToMatter),
+             coverage(set, outcomes, part, false)});
+        subject.facts.push_back(
+            {fmt::format("bounds in {} that hold it", part.unit), coverage(set, outcomes, part, true)});
         subject.pictures.push_back({.name = fmt::format("{}/effects-{}.svg", set.name, part.name),
                                     .caption = fmt::format("Contributions in {}, predicted and measured", part.unit),
                                     .width = kSize.width,

@@ -20,6 +20,19 @@ Measured seen(const Pilot& pilot, const std::function<Image(const Image&)>& chan
     return picture_errors(changed, pilot.full().rgb, pilot.settings().probe.threads).ciede2000.bias;
 }
 
+/// The same of a change of so many px, which the pilot's are not: its detail may be all there is, as of a few edges, so
+/// that a shift counts for as little as it is in the pilot's pixels; or there may be as much at every scale (Ruderman
+/// 1994), so that it counts for as many of them. Anything between is as likely.
+Measured seen_at_any_scale(const Pilot& pilot, const std::function<Image(const Image&, double scale)>& change) {
+    const auto at = [&](double scale) {
+        return seen(pilot, [&](const Image& picture) { return change(picture, scale); });
+    };
+    const Measured fine = at(1.0);
+    const Measured coarse = at(static_cast<double>(pilot.width()) / pilot.setup().camera.sensor.width);
+    const double noise = 0.5 * std::hypot(fine.standard_error, coarse.standard_error);
+    return {0.5 * (fine.value + coarse.value), std::hypot(noise, (fine.value - coarse.value) / std::sqrt(12.0))};
+}
+
 }  // namespace
 
 Measured rms(const std::vector<double>& values) {
@@ -67,16 +80,20 @@ Effect falloff_effect(const Pilot& pilot, const std::string& name, const RadialM
 
 Effect shift_effect(const Pilot& pilot, const std::string& name, const std::array<RadialMean, 3>& shift_px,
                     const Measured& px) {
-    const auto shift = [&](int x, int y, int c) {
-        return shift_px[static_cast<std::size_t>(c)].at(pilot.image_height(x, y)) * pilot.outwards(x, y);
+    const auto shifted = [&](const Image& picture, double scale) {
+        return with_shift(picture, [&](int x, int y, int c) {
+            const double outwards_px = shift_px[static_cast<std::size_t>(c)].at(pilot.image_height(x, y));
+            return scale * outwards_px * pilot.outwards(x, y);
+        });
     };
-    const auto shifted = [&](const Image& picture) { return with_shift(picture, shift); };
-    return {.name = name, .contribution = {.px = px, .ev = {}, .ciede2000 = seen(pilot, shifted)}};
+    return {.name = name, .contribution = {.px = px, .ev = {}, .ciede2000 = seen_at_any_scale(pilot, shifted)}};
 }
 
 Effect blur_effect(const Pilot& pilot, const std::string& name, const PixelSpread& spread_px, const Measured& px) {
-    const auto blurred = [&](const Image& picture) { return with_spread(picture, spread_px); };
-    return {.name = name, .contribution = {.px = px, .ev = {}, .ciede2000 = seen(pilot, blurred)}};
+    const auto blurred = [&](const Image& picture, double scale) {
+        return with_spread(picture, [&](int x, int y) { return scale * spread_px(x, y); });
+    };
+    return {.name = name, .contribution = {.px = px, .ev = {}, .ciede2000 = seen_at_any_scale(pilot, blurred)}};
 }
 
 }  // namespace lensproof::studies

@@ -1,6 +1,7 @@
 #include "experiments/studies/tradeoff/effects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -8,8 +9,9 @@
 
 #include "engine/analysis/seidel.h"
 #include "engine/optics/paraxial.h"
-#include "engine/optics/trace.h"
+#include "engine/render/camera/gaussian_optics.h"
 #include "engine/spectral/wavelengths.h"
+#include "experiments/studies/tradeoff/chief_images.h"
 #include "experiments/studies/tradeoff/effect_kinds.h"
 #include "experiments/studies/tradeoff/rungs.h"
 
@@ -41,13 +43,9 @@ AxialLight axial_light(const Pilot& pilot) {
     AxialLight light;
     for (int i = 0; i < strata.count; ++i) {
         const double nm = strata.midpoint(i);
-        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, nm);
-        const auto axis = optics::trace<optics::Direction::reverse>(
-            traced, {{0.0, 0.0, traced.image_z}, {0.0, 0.0, -lens.final_heading()}});
-        const double all = axis.status == optics::RayStatus::ok ? axis.transmittance : 1.0;
         const Vec3d& rgb = camera.film().rgb_weights[static_cast<std::size_t>(i)];
         light.white = light.white + rgb;
-        light.all = light.all + all * rgb;
+        light.all = light.all + render::axial_transmittance(lens, nm) * rgb;
         light.glass = light.glass + glass_transmittance(lens, nm) * rgb;
     }
     return light;
@@ -72,10 +70,6 @@ struct SeenPoints {
     PointLooks model;
 };
 
-/// Of a point, from both cameras' looks at all of them; nothing where it has no such number.
-using PointNumber = std::function<std::optional<double>(const std::vector<PointLook>& exact,
-                                                        const std::vector<PointLook>& model, std::size_t point)>;
-
 RadialMean over_heights(const SeenPoints& seen, const PointNumber& of) {
     std::vector<RadialMean::Sample> samples;
     for (std::size_t i = 0; i < seen.pilot.points().size(); ++i) {
@@ -88,19 +82,7 @@ RadialMean over_heights(const SeenPoints& seen, const PointNumber& of) {
 }
 
 Measured rms_over_points(const SeenPoints& seen, const PointNumber& of) {
-    const int repetitions = static_cast<int>(seen.exact.size()) - 1;
-    return root(jackknifed(repetitions, [&](int left_out) {
-        const auto looks = static_cast<std::size_t>(left_out);
-        double squares = 0.0;
-        double count = 0.0;
-        for (std::size_t i = 0; i < seen.pilot.points().size(); ++i) {
-            if (const std::optional<double> value = of(seen.exact[looks], seen.model[looks], i)) {
-                squares += *value * *value;
-                count += 1.0;
-            }
-        }
-        return squares / std::max(1.0, count);
-    }));
+    return rms_over_points(seen.exact, seen.model, of);
 }
 
 double outward(const Pilot& pilot, std::size_t point, const Vec2d& shift) {
@@ -109,48 +91,83 @@ double outward(const Pilot& pilot, std::size_t point, const Vec2d& shift) {
     return distance > 0.0 ? (shift.x * from.x + shift.y * from.y) / distance : 0.0;
 }
 
-/// Beside a thin lens.
-void add_geometry(const SeenPoints& seen, std::vector<Effect>& effects) {
+/// A point's image in R, G and B: how far its chief rays land from where a pinhole puts them, how far those of a
+/// colour's wavelengths from each other, and the rest of rays from these, mean squares in px². They add up to what the
+/// exact camera does otherwise than a pinhole.
+struct PointImage {
+    std::array<Vec2d, 3> shift{};
+    std::array<double, 3> squared_spread{};
+    std::array<double, 3> squared_radius{};
+
+    [[nodiscard]] Vec2d mean_shift() const { return (1.0 / 3.0) * (shift[0] + shift[1] + shift[2]); }
+    /// From the mean, over all wavelengths.
+    [[nodiscard]] double colour_shift() const {
+        double squares = 0.0;
+        for (std::size_t c = 0; c < shift.size(); ++c) {
+            const Vec2d off = shift[c] - mean_shift();
+            squares += off.x * off.x + off.y * off.y + squared_spread[c];
+        }
+        return std::sqrt(squares / 3.0);
+    }
+    /// Of the colour that is sharpest, and what all three are wider by.
+    [[nodiscard]] double sharpest() const { return std::sqrt(std::ranges::min(squared_radius)); }
+    [[nodiscard]] double colour_blur() const {
+        const double mean = (squared_radius[0] + squared_radius[1] + squared_radius[2]) / 3.0;
+        return std::sqrt(std::max(0.0, mean - std::ranges::min(squared_radius)));
+    }
+};
+
+/// Where there are no chief rays the centroid stands for them, and where there is none of a colour's light, green.
+PointImage image_of(const PointLook& exact, const PointLook& pinhole, const std::optional<ChiefImage>& chief) {
+    PointImage image;
+    for (std::size_t c = 0; c < image.shift.size(); ++c) {
+        const std::size_t seen = exact.light[c] > 0.0 && pinhole.light[c] > 0.0 ? c : 1;
+        const Vec2d at = chief ? chief->at[seen] : exact.centroid[seen];
+        const Vec2d off = exact.centroid[seen] - at;
+        image.shift[c] = at - pinhole.centroid[seen];
+        image.squared_spread[c] = chief ? chief->squared_spread[seen] : 0.0;
+        image.squared_radius[c] = std::max(0.0, exact.spread_px[seen] * exact.spread_px[seen] + off.x * off.x +
+                                                    off.y * off.y - image.squared_spread[c]);
+    }
+    return image;
+}
+
+/// Beside a pinhole.
+void add_geometry(const SeenPoints& seen, const std::vector<std::optional<ChiefImage>>& chief,
+                  std::vector<Effect>& effects) {
     using Looks = std::vector<PointLook>;
     const Pilot& pilot = seen.pilot;
     // Only of points that both cameras see.
-    const auto lit = [](const auto& of) -> PointNumber {
-        return [of](const Looks& exact, const Looks& thin, std::size_t i) {
-            return exact[i].light[1] > 0.0 && thin[i].light[1] > 0.0 ? std::optional<double>(of(exact, thin, i))
-                                                                     : std::nullopt;
+    const auto lit = [&](const auto& of) -> PointNumber {
+        return [&, of](const Looks& exact, const Looks& pinhole, std::size_t i) -> std::optional<double> {
+            if (!(exact[i].light[1] > 0.0 && pinhole[i].light[1] > 0.0)) {
+                return std::nullopt;
+            }
+            return of(image_of(exact[i], pinhole[i], chief[i]), i);
         };
     };
-    const PointNumber moved = lit([&](const Looks& exact, const Looks& thin, std::size_t i) {
-        return outward(pilot, i, exact[i].centroid[1] - thin[i].centroid[1]);
-    });
-    const RadialMean distortion = over_heights(seen, moved);
-    effects.push_back(
-        shift_effect(pilot, "distortion", {distortion, distortion, distortion}, rms_over_points(seen, moved)));
-    const auto against_green = [&](const Looks& exact, std::size_t i, std::size_t c) {
-        return exact[i].light[c] > 0.0 ? outward(pilot, i, exact[i].centroid[c] - exact[i].centroid[1]) : 0.0;
-    };
+    const auto length_of = [](const Vec2d& v) { return std::hypot(v.x, v.y); };
+    const RadialMean distortion = over_heights(
+        seen, lit([&](const PointImage& image, std::size_t i) { return outward(pilot, i, image.mean_shift()); }));
+    effects.push_back(shift_effect(pilot, "distortion", {distortion, distortion, distortion},
+                                   rms_over_points(seen, lit([&](const PointImage& image, std::size_t) {
+                                                       return length_of(image.mean_shift());
+                                                   }))));
     const auto colour = [&](std::size_t c) {
-        return over_heights(
-            seen, lit([&, c](const Looks& exact, const Looks&, std::size_t i) { return against_green(exact, i, c); }));
+        return over_heights(seen, lit([&, c](const PointImage& image, std::size_t i) {
+                                return outward(pilot, i, image.shift[c] - image.mean_shift());
+                            }));
     };
-    const PointNumber all_colours = lit([&](const Looks& exact, const Looks&, std::size_t i) {
-        return std::hypot(against_green(exact, i, 0), against_green(exact, i, 2)) / std::sqrt(3.0);
-    });
-    effects.push_back(
-        shift_effect(pilot, "lateral-colour", {colour(0), colour(1), colour(2)}, rms_over_points(seen, all_colours)));
+    effects.push_back(shift_effect(
+        pilot, "lateral-colour", {colour(0), colour(1), colour(2)},
+        rms_over_points(seen, lit([](const PointImage& image, std::size_t) { return image.colour_shift(); }))));
     const auto add_blur = [&](const char* name, const PointNumber& of) {
         const RadialMean spread = over_heights(seen, of);
         effects.push_back(blur_effect(
             pilot, name, [&](int x, int y) { return spread.at(pilot.image_height(x, y)); }, rms_over_points(seen, of)));
     };
-    add_blur("aberration-blur",
-             lit([](const Looks& exact, const Looks&, std::size_t i) { return exact[i].spread_px[1]; }));
-    // What red and blue are wider than green by.
-    add_blur("axial-colour", lit([](const Looks& exact, const Looks&, std::size_t i) {
-                 const auto& spread = exact[i].spread_px;
-                 return std::sqrt(
-                     std::max(0.0, 0.5 * (spread[0] * spread[0] + spread[2] * spread[2]) - spread[1] * spread[1]));
-             }));
+    add_blur("aberration-blur", lit([](const PointImage& image, std::size_t) { return image.sharpest(); }));
+    add_blur("axial-colour", lit([](const PointImage& image, std::size_t) { return image.colour_blur(); }));
 }
 
 /// A thin lens's discs at the depths that the pilot saw, rms radius in px: the diameter is f²/(N (s − f)) |d − s| / d.
@@ -257,16 +274,15 @@ std::vector<Effect> lens_effects(const Pilot& pilot) {
     const auto look_through = [&](const render::Camera& camera) {
         return look_at_points(camera, pilot.points(), settings.probe);
     };
-    const auto look_by = [&](const char* name, render::LensModel model) {
-        const render::SceneSetup setup = on_rung(pilot.setup(), {.name = name, .model = model});
-        return look_through({setup.camera, setup.spectral, render::PixelFilter{}, settings.cache, true});
-    };
-    const PointLooks exact = look_through(pilot.camera());
+    const render::SceneSetup pinhole = on_rung(pilot.setup(), {.name = "pinhole", .model = render::LensModel::pinhole});
+    const SeenPoints beside_pinhole{
+        pilot, look_through(pilot.camera()),
+        look_through({pinhole.camera, pinhole.spectral, render::PixelFilter{}, settings.cache, true})};
     std::vector<Effect> effects;
-    add_geometry({pilot, exact, look_by("thin-lens", render::LensModel::thin_lens)}, effects);
+    add_geometry(beside_pinhole, chief_images(pilot.camera(), pilot.points(), settings.probe.threads), effects);
     add_third_order(pilot, effects);
     effects.push_back(defocus(pilot));
-    add_falloff({pilot, exact, look_by("pinhole", render::LensModel::pinhole)}, effects);
+    add_falloff(beside_pinhole, effects);
     add_losses(pilot, axial_light(pilot), effects);
     effects.push_back(sensor(pilot));
     return effects;

@@ -334,6 +334,22 @@ PointLooks look_at_points(const render::Camera& camera, const std::vector<ProbeP
     return looks;
 }
 
+Measured rms_over_points(const PointLooks& one, const PointLooks& other, const PointNumber& of) {
+    const int repetitions = static_cast<int>(one.size()) - 1;
+    return root(jackknifed(repetitions, [&](int left_out) {
+        const auto looks = static_cast<std::size_t>(left_out);
+        double squares = 0.0;
+        double count = 0.0;
+        for (std::size_t i = 0; i < one[looks].size(); ++i) {
+            if (const std::optional<double> value = of(one[looks], other[looks], i)) {
+                squares += *value * *value;
+                count += 1.0;
+            }
+        }
+        return squares / std::max(1.0, count);
+    }));
+}
+
 FieldErrors field_errors(const render::Camera& exact, const render::Camera& model,
                          const std::vector<ProbePoint>& points, const ProbeSettings& settings) {
     const PooledSums sums = pooled(

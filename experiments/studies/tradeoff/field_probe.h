@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "engine/render/camera/camera.h"
@@ -50,6 +51,12 @@ PointLooks look_at_points(const render::Camera& camera, const std::vector<ProbeP
 /// By the jackknife over repetitions (Miller 1974): `of(r)` is a statistic of what all but repetition r found together,
 /// `of(repetitions)` that of all.
 Measured jackknifed(int repetitions, const std::function<double(int left_out)>& of);
+
+/// Of a point, from two cameras' looks at all of them; nothing where it has no such number.
+using PointNumber = std::function<std::optional<double>(const std::vector<PointLook>& one,
+                                                        const std::vector<PointLook>& other, std::size_t point)>;
+/// Its root mean square over the points, by the jackknife.
+Measured rms_over_points(const PointLooks& one, const PointLooks& other, const PointNumber& of);
 
 /// What a model does otherwise than the exact camera at a point of the frame, and over the frame.
 struct FieldError {

@@ -16,7 +16,7 @@ struct PilotSettings {
     int stray_samples = 8;       // the same, of light that goes astray
     int smooth_pixels = 60'000;  // of what tells how smooth stray light is (smooth_light.h)
     int few_smooth_samples = 2;  // of a pixel and a seed
-    int smooth_samples = 6;      // where these do not tell
+    int smooth_samples = 4;      // where these do not tell
     int seeds = 2;
     int points = 24;
     ProbeSettings probe{.rays = 24, .even_rays = 128, .repetitions = 8};

@@ -32,8 +32,9 @@ formats::Image with_gain(const formats::Image& picture, const PixelGain& gain);
 using PixelShift = std::function<Vec2d(int x, int y, int channel)>;
 formats::Image with_shift(const formats::Image& picture, const PixelShift& shift);
 
-/// Each pixel's light is spread as a Gaussian of that rms radius (√2 of its σ along an axis), px, cut at three σ, with
-/// what is spread kept.
+/// Each pixel's light is spread as a lattice's Gaussian of that rms radius (√2 of its σ along an axis), px, cut a pixel
+/// beyond three σ, with what is spread kept. Narrow ones spread as much as they do at edges that lie anywhere between
+/// pixels.
 using PixelSpread = std::function<double(int x, int y)>;
 formats::Image with_spread(const formats::Image& picture, const PixelSpread& spread);
 
