@@ -96,17 +96,17 @@ bool embree_finds_any(Query& query) {
 SurfaceHit hit_at(const SceneGeometry::Data& data, const Stretch<double>& ray, const Nearest& nearest) {
     const PlacedObject& met = data.objects[nearest.object];
     const Meeting<double>& at = nearest.meeting;
-    const auto on = [&](const ShapePoint& point) { return world_hit(met.place, point); };
-    const auto* mesh = std::get_if<TriangleMesh>(met.shape);
-    const auto* quad = std::get_if<Quad>(met.shape);
     SurfaceHit hit;
-    if (mesh != nullptr) {
-        hit = on(shape_point(*mesh, nearest.primitive, at.b1, at.b2));
-    } else if (quad != nullptr) {
-        hit = on(shape_point(*quad, at.b1, at.b2));
+    if (const auto* quad = std::get_if<Quad>(met.shape)) {
+        hit = met.facets.front().hit(std::clamp(at.b1 / quad->width_mm + 0.5, 0.0, 1.0),
+                                     std::clamp(at.b2 / quad->height_mm + 0.5, 0.0, 1.0));
+    } else if (!met.facets.empty()) {
+        hit = met.facets[nearest.primitive].hit(at.b1, at.b2);
+    } else if (const auto* mesh = std::get_if<TriangleMesh>(met.shape)) {
+        hit = world_hit(met.place, shape_point(*mesh, nearest.primitive, at.b1, at.b2));
     } else {
         const Stretch<double> local = mapped(met.place.to_local, ray);
-        hit = on(shape_point(std::get<Sphere>(*met.shape), local.origin + at.at * local.direction));
+        hit = world_hit(met.place, shape_point(std::get<Sphere>(*met.shape), local.origin + at.at * local.direction));
     }
     hit.distance_mm = at.at;
     hit.material = met.object.material;

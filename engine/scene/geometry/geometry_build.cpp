@@ -149,6 +149,30 @@ void bound_objects(SceneGeometry::Data& data) {
     }
 }
 
+/// Of quads, and of flat meshes that stand in the scene once where all of them have so few triangles that their facets
+/// stay in the caches.
+void find_facets(SceneGeometry::Data& data) {
+    constexpr std::size_t kMostTriangles = 8192;  // of 250 bytes
+    const auto flat_mesh = [&](const PlacedObject& placed) {
+        const auto* mesh = std::get_if<TriangleMesh>(placed.shape);
+        return mesh != nullptr && mesh->normals.empty() && data.uses[placed.object.shape] == 1 ? mesh : nullptr;
+    };
+    std::size_t triangles = 0;
+    for (const PlacedObject& placed : data.objects) {
+        const TriangleMesh* mesh = flat_mesh(placed);
+        triangles += mesh != nullptr ? mesh->triangles.size() : 0;
+    }
+    for (PlacedObject& placed : data.objects) {
+        const TriangleMesh* mesh = flat_mesh(placed);
+        if (const auto* quad = std::get_if<Quad>(placed.shape)) {
+            placed.facets = {facet_of(*quad, placed.place)};
+        }
+        for (std::uint32_t i = 0; mesh != nullptr && triangles <= kMostTriangles && i < mesh->triangles.size(); ++i) {
+            placed.facets.push_back(facet_of(*mesh, i, placed.place));
+        }
+    }
+}
+
 embree::Geometry new_geometry(const SceneGeometry::Data& data, RTCGeometryType type) {
     embree::Geometry geometry(rtcNewGeometry(data.device.get(), type));
     if (!geometry) {
@@ -263,6 +287,7 @@ SceneGeometry::SceneGeometry(std::vector<Shape> shapes, std::vector<SceneObject>
     check_shapes(*data);
     place_objects(*data, objects);
     bound_objects(*data);
+    find_facets(*data);
     build(*data);
     data_ = std::move(data);
 }

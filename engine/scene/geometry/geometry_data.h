@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/scene/geometry/embree.h"
+#include "engine/scene/geometry/facet.h"
 #include "engine/scene/geometry/geometry.h"
 #include "engine/scene/geometry/shape_hit.h"
 
@@ -23,6 +24,8 @@ struct PlacedObject {
     ObjectPlace place;
     const Shape* shape = nullptr;
     Box bounds;
+    std::vector<Facet>
+        facets;  // of a quad; of each triangle of a mesh, if that is kept (geometry_build.cpp); else none
 };
 
 struct SceneGeometry::Data {

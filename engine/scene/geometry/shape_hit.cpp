@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "engine/base/elementary.h"
 
 namespace lensproof::scene {
 
@@ -95,9 +96,9 @@ ShapePoint shape_point(const TriangleMesh& mesh, std::uint32_t triangle, double 
 
 ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards) {
     const Vec3d n = normalized(towards);
-    const double turn = std::atan2(n.y, n.x) / (2.0 * std::numbers::pi);
+    const double turn = turns_of(n.x, n.y);
     // From the pole's distance as well: an arc sine alone loses half its digits there.
-    const double elevation = std::atan2(n.z, std::sqrt(n.x * n.x + n.y * n.y)) / std::numbers::pi;
+    const double elevation = 2.0 * turns_of(std::sqrt(n.x * n.x + n.y * n.y), n.z);
     return {.point = sphere.radius_mm * n,
             .geometric_normal = n,
             .shading_normal = n,

@@ -30,11 +30,6 @@ Vec3d sphere_direction(double u1, double u2) {
     return {across * std::cos(2.0 * kPi * u2), across * std::sin(2.0 * kPi * u2), z};
 }
 
-ShapePoint mesh_point(const TriangleMesh& mesh, std::uint32_t triangle, double u1, double u2) {
-    const double root = std::sqrt(u1);
-    return shape_point(mesh, triangle, root * (1.0 - u2), root * u2);
-}
-
 }  // namespace
 
 SurfaceSampler::SurfaceSampler(const SceneGeometry& scene, std::uint32_t object) : scene_(&scene), object_(object) {
@@ -56,27 +51,39 @@ SurfaceSampler::SurfaceSampler(const SceneGeometry& scene, std::uint32_t object)
 
 SurfaceSample SurfaceSampler::sample(double u1, double u2) const {
     const PlacedObject& placed = scene_->data().objects[object_];
-    std::uint32_t primitive = 0;
-    ShapePoint at;
-    if (const auto* sphere = std::get_if<Sphere>(placed.shape)) {
-        at = shape_point(*sphere, sphere_direction(u1, u2));
-    } else if (const auto* quad = std::get_if<Quad>(placed.shape)) {
-        at = shape_point(*quad, (u1 - 0.5) * quad->width_mm, (u2 - 0.5) * quad->height_mm);
-    } else {
-        const double sought = u1 * area_mm2_;
-        const auto chosen = std::min(std::ranges::upper_bound(areas_to_mm2_, sought), areas_to_mm2_.end() - 1);
-        const double before = chosen == areas_to_mm2_.begin() ? 0.0 : *(chosen - 1);
-        primitive = static_cast<std::uint32_t>(chosen - areas_to_mm2_.begin());
-        const double rest = std::clamp((sought - before) / (*chosen - before), 0.0, 1.0);
-        at = mesh_point(std::get<TriangleMesh>(*placed.shape), primitive, rest, u2);
+    if (std::holds_alternative<Sphere>(*placed.shape)) {
+        return drawn(world_hit(placed.place, shape_point(std::get<Sphere>(*placed.shape), sphere_direction(u1, u2))));
     }
-    const SurfaceHit hit = world_hit(placed.place, at);
+    if (std::holds_alternative<Quad>(*placed.shape)) {
+        return drawn(placed.facets.front(), u1, u2);
+    }
+    const double sought = u1 * area_mm2_;
+    const auto chosen = std::min(std::ranges::upper_bound(areas_to_mm2_, sought), areas_to_mm2_.end() - 1);
+    const double before = chosen == areas_to_mm2_.begin() ? 0.0 : *(chosen - 1);
+    const double root = std::sqrt(std::clamp((sought - before) / (*chosen - before), 0.0, 1.0));
+    const auto triangle = static_cast<std::uint32_t>(chosen - areas_to_mm2_.begin());
+    SurfaceSample sample = placed.facets.empty()
+                               ? drawn(world_hit(placed.place, shape_point(std::get<TriangleMesh>(*placed.shape),
+                                                                           triangle, root * (1.0 - u2), root * u2)))
+                               : drawn(placed.facets[triangle], root * (1.0 - u2), root * u2);
+    sample.primitive = triangle;
+    return sample;
+}
+
+SurfaceSample SurfaceSampler::drawn(const SurfaceHit& hit) const {
     return {.point = hit.point,
             .geometric_normal = hit.geometric_normal,
             .uv = hit.uv,
             .pdf_per_mm2 = pdf_per_mm2(hit),
-            .primitive = primitive,
             .error_mm = hit.error_mm};
+}
+
+SurfaceSample SurfaceSampler::drawn(const Facet& facet, double a, double b) const {
+    return {.point = facet.point(a, b),
+            .geometric_normal = facet.normal,
+            .uv = facet.uv_at(a, b),
+            .pdf_per_mm2 = 1.0 / area_mm2_,
+            .error_mm = facet.error_mm};
 }
 
 double SurfaceSampler::pdf_per_mm2(const SurfaceHit& hit) const {

@@ -7,6 +7,8 @@
 
 namespace lensproof::scene {
 
+struct Facet;
+
 /// A point on an object, in the world.
 struct SurfaceSample {
     Vec3d point;
@@ -32,6 +34,9 @@ class SurfaceSampler {
     [[nodiscard]] double area_mm2() const { return area_mm2_; }
 
   private:
+    [[nodiscard]] SurfaceSample drawn(const SurfaceHit& hit) const;
+    [[nodiscard]] SurfaceSample drawn(const Facet& facet, double a, double b) const;
+
     const SceneGeometry* scene_;
     std::uint32_t object_;
     std::vector<double> areas_to_mm2_;  // of a mesh: the summed areas up to and with each triangle

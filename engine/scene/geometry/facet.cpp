@@ -1,0 +1,36 @@
+#include "engine/scene/geometry/facet.h"
+
+#include <algorithm>
+
+namespace lensproof::scene {
+
+namespace {
+
+Facet facet_between(const SurfaceHit& corner, const SurfaceHit& a, const SurfaceHit& b) {
+    constexpr double kErrors = 5.0;  // of a corner, and of two differences of corners
+    return {.corner = corner.point,
+            .along_a = a.point - corner.point,
+            .along_b = b.point - corner.point,
+            .normal = corner.geometric_normal,
+            .tangent = corner.tangent,
+            .uv = corner.uv,
+            .uv_along_a = a.uv - corner.uv,
+            .uv_along_b = b.uv - corner.uv,
+            .error_mm = kErrors * std::max({corner.error_mm, a.error_mm, b.error_mm})};
+}
+
+}  // namespace
+
+Facet facet_of(const Quad& quad, const ObjectPlace& place) {
+    const auto corner = [&](double x_sign, double y_sign) {
+        return world_hit(place, shape_point(quad, 0.5 * x_sign * quad.width_mm, 0.5 * y_sign * quad.height_mm));
+    };
+    return facet_between(corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0));
+}
+
+Facet facet_of(const TriangleMesh& mesh, std::uint32_t triangle, const ObjectPlace& place) {
+    const auto corner = [&](double b1, double b2) { return world_hit(place, shape_point(mesh, triangle, b1, b2)); };
+    return facet_between(corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0));
+}
+
+}  // namespace lensproof::scene
