@@ -8,9 +8,7 @@ namespace {
 
 Facet facet_between(const SurfaceHit& corner, const SurfaceHit& a, const SurfaceHit& b) {
     constexpr double kErrors = 5.0;  // of a corner, and of two differences of corners
-    return {.corner = corner.point,
-            .along_a = a.point - corner.point,
-            .along_b = b.point - corner.point,
+    return {.sides = {corner.point, a.point - corner.point, b.point - corner.point},
             .normal = corner.geometric_normal,
             .tangent = corner.tangent,
             .uv = corner.uv,

@@ -6,12 +6,10 @@
 
 namespace lensproof::scene {
 
-/// A quad, or a triangle of a mesh, in the world: the point of sides' parts (a, b), each from 0 to 1, is corner +
-/// a along_a + b along_b; of a triangle they are the barycentric coordinates of its second and third vertex.
+/// A quad, or a triangle of a mesh, in the world: a point of it lies so far, from 0 to 1, along two of its sides, which
+/// of a triangle are the barycentric coordinates of its second and third vertex.
 struct Facet {
-    Vec3d corner;
-    Vec3d along_a;
-    Vec3d along_b;
+    TriangleSides sides;
     Vec3d normal;  // geometric, outward
     Vec3d tangent;
     Vec2d uv;
@@ -19,7 +17,9 @@ struct Facet {
     Vec2d uv_along_b;
     double error_mm = 0.0;  // of any of its points, as in SurfaceHit
 
-    [[nodiscard]] Vec3d point(double a, double b) const { return corner + a * along_a + b * along_b; }
+    [[nodiscard]] Vec3d point(double a, double b) const {
+        return sides.first + a * sides.to_second + b * sides.to_third;
+    }
     [[nodiscard]] Vec2d uv_at(double a, double b) const { return uv + a * uv_along_a + b * uv_along_b; }
     /// A hit without a distance, material, object and primitive, shaded flat.
     [[nodiscard]] SurfaceHit hit(double a, double b) const {

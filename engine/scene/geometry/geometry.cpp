@@ -154,10 +154,12 @@ void judge_triangle(const RTCFilterFunctionNArguments* arguments) {
     Query& query = query_of(arguments->context);
     const bool is_instance = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
     const std::uint32_t object = is_instance ? hit.instID[0] : hit.geomID;
-    const ObjectPlace& place = query.data->objects[object].place;
-    const Stretch<double> ray = is_instance ? mapped(place.to_local, query.ray) : query.ray;
-    const double near = kFloatRoundings * (largest_coordinate(query.ray.origin) + place.reach_mm);
-    const auto meeting = meet(corners(query.data->mesh(object), hit.primID), hit.u, hit.v, near, ray);
+    const PlacedObject& placed = query.data->objects[object];
+    const Stretch<double> ray = is_instance ? mapped(placed.place.to_local, query.ray) : query.ray;
+    const double near = kFloatRoundings * (largest_coordinate(query.ray.origin) + placed.place.reach_mm);
+    const auto meeting = placed.facets.empty()
+                             ? meet(sides(std::get<TriangleMesh>(*placed.shape), hit.primID), hit.u, hit.v, near, ray)
+                             : meet(placed.facets[hit.primID].sides, hit.u, hit.v, near, ray);
     if (!meeting || (!query.is_occlusion && !query.nearest.offer(*meeting, object, hit.primID))) {
         arguments->valid[0] = 0;
     } else if (!query.is_occlusion) {

@@ -34,12 +34,11 @@ Vec3d u_direction(const std::array<Vec3d, 3>& p, const std::array<Vec2<float>, 3
 
 }  // namespace
 
-std::optional<Meeting<double>> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
+std::optional<Meeting<double>> meet(const TriangleSides& triangle, double float_b1, double float_b2, double near,
                                     const Stretch<double>& ray) {
     // Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
-    const Vec3d e1 = triangle[1] - triangle[0];
-    const Vec3d e2 = triangle[2] - triangle[0];
-    const Vec3d from_first = ray.origin - triangle[0];
+    const auto& [first, e1, e2] = triangle;
+    const Vec3d from_first = ray.origin - first;
     const Vec3d across = cross(ray.direction, e2);
     const Vec3d q = cross(from_first, e1);
     const double scale = 1.0 / dot(e1, across);
@@ -64,6 +63,11 @@ std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto& [a, b, c] = mesh.triangles[triangle];
     return {converted<double>(mesh.positions[a]), converted<double>(mesh.positions[b]),
             converted<double>(mesh.positions[c])};
+}
+
+TriangleSides sides(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto [a, b, c] = corners(mesh, triangle);
+    return {a, b - a, c - a};
 }
 
 ShapePoint shape_point(const TriangleMesh& mesh, std::uint32_t triangle, double b1, double b2) {

@@ -10,17 +10,25 @@
 
 namespace lensproof::scene {
 
+/// A triangle's first vertex, and the ways from there to the others.
+struct TriangleSides {
+    Vec3d first;
+    Vec3d to_second;
+    Vec3d to_third;
+};
+
 /// The triangle that Embree's float ray has met at barycentric coordinates (float_b1, float_b2).
 ///
 /// Its plane is met again in double. Where that lies outside the triangle, the true ray has gone by its edge within
 /// float's rounding, and Embree has found this triangle instead of its neighbour: the point that Embree names is taken,
 /// so that closed meshes stay closed; but not within float's rounding of the origin, `near`, where it could be the
 /// surface that the ray is just leaving.
-std::optional<Meeting<double>> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
+std::optional<Meeting<double>> meet(const TriangleSides& triangle, double float_b1, double float_b2, double near,
                                     const Stretch<double>& ray);
 
-/// The triangle's vertices.
+/// The triangle's vertices, and its sides.
 std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle);
+TriangleSides sides(const TriangleMesh& mesh, std::uint32_t triangle);
 
 /// A surface's point with all that belongs to it, in the shape's own frame; `uv`, normals and tangent as in
 /// `SurfaceHit`.
