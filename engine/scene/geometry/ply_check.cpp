@@ -72,7 +72,9 @@ class PlyCheck {
                 body += values;
             }
         }
-        return head + "end_header\n" + body;
+        // Assimp takes a line's end off binary values, too, in case the header's was "\r\n".
+        const bool is_hidden = header.form != PlyForm::ascii && body.starts_with('\n');
+        return head + "end_header\n" + (is_hidden ? "\n" : "") + body;
     }
 
   private:

@@ -454,4 +454,18 @@ TEST_F(MeshFileTest, CutFilesAreRefusedOrWhole) {
     }
 }
 
+// A first value whose first byte looks like a line's end: one file in 256, of which every value would be another.
+TEST_F(MeshFileTest, ABinaryPlyMayBeginWithAnyByte) {
+    for (const char first : {'\n', '\r', ' ', '\0'}) {
+        std::string bytes =
+            "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+        bytes += std::string{first, 0, '\x80', '\x3F'} + std::string(12, '\0');  // (1, 0, 0), (0, …
+        bytes += std::string{0, 0, '\x80', '\x3F'} + std::string(12, '\0');      // 1, 0), (0, 0, …
+        bytes += std::string{0, 0, '\x80', '\x3F', 3} + std::string("\0\0\0\0\1\0\0\0\2\0\0\0", 12);  // 1)
+        const SceneGeometry scene({read_mesh(write("any.ply", bytes)).mesh}, {{.shape = 0}});
+        EXPECT_NEAR(SurfaceSampler(scene, 0).area_mm2(), std::sqrt(0.75), 1e-5) << int{first};
+    }
+}
+
 }  // namespace lensproof::scene::mesh_file_test
