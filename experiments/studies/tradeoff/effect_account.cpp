@@ -155,7 +155,7 @@ class Accountant {
                               pilot_.settings().probe);
     }
 
-    /// Windows by a model, a thin lens being as bright as a pinhole: its flat pupil is darker (README, the models).
+    /// Windows by a model, a thin lens being as bright as a pinhole: its flat pupil is darker (experiments/README.md).
     [[nodiscard]] std::vector<formats::Image> windows_by(const std::string& model, std::uint64_t first_seed) const {
         const PilotSettings& settings = pilot_.settings();
         std::vector<formats::Image> pictures =

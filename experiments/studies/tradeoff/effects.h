@@ -25,9 +25,9 @@ struct Effect {
 /// defocus, vignetting, cos4, fresnel-loss, coating-colour, absorption, sensor. Each is done to the pilot's pictures,
 /// or taken from them. Of the blur, what it is made of in third order: spherical-aberration, coma, astigmatism and
 /// field-curvature, which wide fields and apertures exceed. Places, widths and light are the root mean square over the
-/// probe's points: of chief rays beside a thin lens, of what lies about them, and of light beside a pinhole, whose
-/// pupil is that of first order. What a shift or a blur of so many of the scene's pixels does to colours depends on
-/// detail that the pilot does not show: its error says so.
+/// probe's points, all beside a pinhole, whose pupil is that of first order: of chief rays, of what lies about them,
+/// and of light. What a shift or a blur of so many of the scene's pixels does to colours depends on detail that the
+/// pilot does not show: its error says so.
 std::vector<Effect> lens_effects(const Pilot& pilot);
 
 /// Light that goes astray: ghosts, faint-ghosts, barrel, diffraction. By a few samples of the first's and the third's

@@ -103,7 +103,7 @@ namespace {
 /// e⁻ᵗ Iₙ(t), n from 0 to `reach`, Iₙ being the modified Bessel functions: the Gaussian of a lattice, whose variance is
 /// t however narrow it is, and whose sum over all n, negative ones too, is 1 (Lindeberg, "Scale-space for discrete
 /// signals", IEEE PAMI 12, 1990, §IV). By their recurrence downwards, in which any other solution dies (Miller; Olver
-/// et al., NIST Handbook, §10.74(iv)).
+/// et al., NIST Handbook, §10.74(iv)): all n at once, for each pixel.
 std::vector<double> lattice_gaussian(double t, int reach) {
     const int beyond = reach + 10 + static_cast<int>(6.0 * std::sqrt(t));
     std::vector<double> weights(static_cast<std::size_t>(beyond) + 2);

@@ -454,7 +454,8 @@ TEST_F(MeshFileTest, CutFilesAreRefusedOrWhole) {
     }
 }
 
-// A first value whose first byte looks like a line's end: one file in 256, of which every value would be another.
+// A first value whose first byte looks like a line's end: one file in 256, of which every value would be another. The
+// bytes move a 1 by 4e-6 at most.
 TEST_F(MeshFileTest, ABinaryPlyMayBeginWithAnyByte) {
     for (const char first : {'\n', '\r', ' ', '\0'}) {
         std::string bytes =
