@@ -160,6 +160,7 @@ class PathWalk {
         if (spectral::is_black(scattering)) {
             return;
         }
+        scene::fetch(light->place);
         ++result_.rays;
         const Vec3d wi = vertex.frame.to_local(light->direction);
         const double to_light =

@@ -92,21 +92,15 @@ Environment::Environment(ImageTexture picture, const Vec3d& up, double rotate_de
     });
 }
 
-MapPlace Environment::place(const Vec2d& at, double pdf) const {
-    const TexelPlace texels = place_at(picture_, {at.x, 1.0 - at.y});
-    fetch(picture_, texels);
-    return {.map = this, .texels = texels, .pdf = pdf};
-}
-
 MapDraw Environment::draw(const Vec2d& numbers) const {
     const PixelDistribution::Draw drawn = places_.draw(numbers);
     const auto [direction, sine] = map_direction(drawn.at);
-    return {frame_.to_world(direction), place(drawn.at, per_solid_angle(drawn.pdf, sine))};
+    return {frame_.to_world(direction), {this, drawn.at, per_solid_angle(drawn.pdf, sine)}};
 }
 
 MapPlace Environment::find(const Vec3d& direction) const {
     const auto [at, sine] = map_point(frame_.to_local(direction));
-    return place(at, per_solid_angle(places_.pdf(at), sine));
+    return {this, at, per_solid_angle(places_.pdf(at), sine)};
 }
 
 void Environment::draw(std::span<const Vec2d> numbers, std::span<MapDraw> draws) const {
@@ -122,13 +116,15 @@ void Environment::draw(std::span<const Vec2d> numbers, std::span<MapDraw> draws)
         map_kernels().find_directions(columns);
         for (std::size_t i = 0; i < columns.size; ++i) {
             draws[i] = {frame_.to_world({columns.x[i], columns.y[i], columns.z[i]}),
-                        place(drawn[i].at, per_solid_angle(drawn[i].pdf, columns.sine[i]))};
+                        {this, drawn[i].at, per_solid_angle(drawn[i].pdf, columns.sine[i])}};
         }
     }
 }
 
 void Environment::find(std::span<const Vec3d> directions, std::span<MapPlace> places) const {
     MapColumns columns;
+    std::array<Vec2d, MapColumns::kMost> points;
+    std::array<double, MapColumns::kMost> pdfs{};
     for (; !directions.empty(); directions = directions.subspan(columns.size), places = places.subspan(columns.size)) {
         columns.size = std::min(directions.size(), MapColumns::kMost);
         for (std::size_t i = 0; i < columns.size; ++i) {
@@ -139,8 +135,12 @@ void Environment::find(std::span<const Vec3d> directions, std::span<MapPlace> pl
         }
         map_kernels().find_points(columns);
         for (std::size_t i = 0; i < columns.size; ++i) {
-            const Vec2d at{columns.at_x[i], columns.at_y[i]};
-            places[i] = place(at, per_solid_angle(places_.pdf(at), columns.sine[i]));
+            points[i] = {columns.at_x[i], columns.at_y[i]};
+        }
+        places_.find_pdfs(std::span(points).first(columns.size), pdfs);
+        for (std::size_t i = 0; i < columns.size; ++i) {
+            places[i] = {this, points[i], per_solid_angle(pdfs[i], columns.sine[i])};
+            fetch(places[i]);
         }
     }
 }

@@ -19,27 +19,29 @@ class Environment {
     Environment(ImageTexture picture, const Vec3d& up, double rotate_deg);
 
     /// A direction drawn about as often as light comes from there: a cell of some pixels by its brightness and solid
-    /// angle, evenly within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5). What
-    /// `radiance_at` will read of the picture is on its way from memory.
+    /// angle, evenly within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5).
     [[nodiscard]] MapDraw draw(const Vec2d& numbers) const;
-    /// Where the picture shows a direction, on its way from memory as above.
+    /// Where the picture shows a direction.
     [[nodiscard]] MapPlace find(const Vec3d& direction) const;
-    /// The same of many at a time, to the bit.
+    /// The same of many at a time, to the bit; `find` asks memory for them.
     void draw(std::span<const Vec2d> numbers, std::span<MapDraw> draws) const;
     void find(std::span<const Vec3d> directions, std::span<MapPlace> places) const;
 
+    /// Asks memory for what `radiance_at` will read.
+    void fetch(const MapPlace& place) const { scene::fetch(picture_, texels(place)); }
     /// Of a place that this map has told.
     [[nodiscard]] spectral::SpectralSample radiance_at(const MapPlace& place,
                                                        const spectral::PathWavelengths& path) const {
-        return value_at(picture_, place.texels, path);
+        return value_at(picture_, texels(place), path);
     }
 
     /// ∫ of the mean radiance over the grid and all directions, W·m⁻²·nm⁻¹.
     [[nodiscard]] double mean_power() const { return mean_power_; }
 
   private:
-    /// The place of a point of the picture's unit square, as PixelDistribution has it, and its pdf.
-    [[nodiscard]] MapPlace place(const Vec2d& at, double pdf) const;
+    [[nodiscard]] TexelPlace texels(const MapPlace& place) const {
+        return place_at(picture_, {place.at.x, 1.0 - place.at.y});
+    }
 
     ImageTexture picture_;
     Basis frame_;

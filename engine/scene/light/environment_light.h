@@ -45,6 +45,13 @@ struct EnvironmentLight {
     }
 };
 
+/// Asks memory for what `light_of` will read.
+inline void fetch(const MapPlace& place) {
+    if (place.map != nullptr) {
+        place.map->fetch(place);
+    }
+}
+
 /// `value`, and as a factor what a map has at `place`.
 inline spectral::SpectralSample light_of(const spectral::SpectralSample& value, const MapPlace& place,
                                          const spectral::PathWavelengths& path) {

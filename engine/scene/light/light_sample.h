@@ -16,12 +16,12 @@ namespace lensproof::scene {
 
 class Environment;
 
-/// A place of a map that is not yet looked up: it lies beyond the caches, and by the time that a path knows whether it
-/// sees the place, memory has brought it.
+/// A place of a map that is not yet looked up: it lies beyond the caches, and once it may count, memory is asked for it
+/// (`fetch`), so that it is there when a path knows whether it sees the place.
 struct MapPlace {
     const Environment* map = nullptr;  // none: there is nothing to look up
-    TexelPlace texels;
-    double pdf = 0.0;  // with which the map is drawn there
+    Vec2d at;                          // of the picture's unit square, from its top left corner
+    double pdf = 0.0;                  // with which the map is drawn there
 };
 
 /// A direction that was drawn of a map.

@@ -87,11 +87,10 @@ PixelDistribution::PixelDistribution(int width, int height, const SquaresOfRow& 
         return std::min((static_cast<std::size_t>(pixels) + cells - 1) / cells, kMostBlocks);
     };
     columns_ = blocks_over(width, kAcross);
-    rows_.resize(blocks_over(height, kDown));
+    row_count_ = blocks_over(height, kDown);
     const std::vector<double> squares =
         mean_squares({.count = columns_ * kAcross, .pixels = static_cast<std::size_t>(width)},
-                     {.count = rows_.size() * kDown, .pixels = static_cast<std::size_t>(height)}, squares_of_row);
-    blocks_.resize(columns_ * rows_.size());
+                     {.count = row_count_ * kDown, .pixels = static_cast<std::size_t>(height)}, squares_of_row);
     const auto cell_weights = [&](std::size_t block) {
         std::array<double, kCells> weights{};
         for (std::size_t i = 0; i < kCells; ++i) {
@@ -103,7 +102,7 @@ PixelDistribution::PixelDistribution(int width, int height, const SquaresOfRow& 
     // Of blocks as a whole and in cells. The root of ∫ f²/p is the sum of all weights.
     std::vector<double> weights;
     std::vector<double> in_cells;
-    for (std::size_t block = 0; block < blocks_.size(); ++block) {
+    for (std::size_t block = 0; block < columns_ * row_count_; ++block) {
         const std::array<double, kCells> cells = cell_weights(block);
         weights.push_back(std::sqrt(std::inner_product(cells.begin(), cells.end(), cells.begin(), 0.0) / kCells));
         in_cells.push_back(std::min(std::accumulate(cells.begin(), cells.end(), 0.0) / kCells, weights.back()));
@@ -115,31 +114,35 @@ PixelDistribution::PixelDistribution(int width, int height, const SquaresOfRow& 
     std::array<double, kCells> even{};
     even.fill(1.0);
     add_cells(even);
+    blocks_.resize((columns_ + kAfter) * row_count_);
     for (const std::size_t block : worth_cells(weights, in_cells)) {
-        blocks_[block].cells = static_cast<std::uint16_t>(cells_.size());
+        blocks_[block / columns_ * (columns_ + kAfter) + block % columns_].cells =
+            static_cast<std::uint16_t>(cells_.size());
         add_cells(cell_weights(block));
         weights[block] = in_cells[block];
     }
     std::vector<double> row_weights;
-    for (std::size_t row = 0; row < rows_.size(); ++row) {
+    for (std::size_t row = 0; row < row_count_; ++row) {
         const auto of_row = std::span(weights).subspan(row * columns_, columns_);
-        fill(std::span(blocks_).subspan(row * columns_, columns_), of_row);
+        fill(blocks_.data() + row * (columns_ + kAfter), of_row);
         row_weights.push_back(std::accumulate(of_row.begin(), of_row.end(), 0.0));
     }
-    fill(rows_, row_weights);
+    rows_.resize(row_count_ + kAfter);
+    fill(rows_.data(), row_weights);
 }
 
-void PixelDistribution::fill(std::span<Step> steps, std::span<const double> weights) {
+void PixelDistribution::fill(Step* steps, std::span<const double> weights) {
     const std::vector<std::uint32_t> falls = chances(weights, kChances);
     std::uint32_t before = 0;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
+    for (std::size_t i = 0; i < falls.size(); ++i) {
         steps[i].before = before;
         before += falls[i];
     }
+    std::fill_n(steps + falls.size(), kAfter, Step{.before = kChances});
     std::size_t step = 0;
-    for (std::size_t part = 0; part < steps.size(); ++part) {
-        const double begin = double{kChances} * static_cast<double>(part) / static_cast<double>(steps.size());
-        while (step + 1 < steps.size() && steps[step + 1].before <= begin) {
+    for (std::size_t part = 0; part < falls.size(); ++part) {
+        const double begin = double{kChances} * static_cast<double>(part) / static_cast<double>(falls.size());
+        while (step + 1 < falls.size() && steps[step + 1].before <= begin) {
             ++step;
         }
         steps[part].guide = static_cast<std::uint16_t>(step);
@@ -150,75 +153,104 @@ std::size_t PixelDistribution::part_at(std::size_t steps, double u) {
     return std::min(static_cast<std::size_t>(u * static_cast<double>(steps)), steps - 1);
 }
 
-double PixelDistribution::width_of(std::span<const Step> steps, std::size_t step) {
-    return (step + 1 < steps.size() ? steps[step + 1].before : kChances) - steps[step].before;
-}
-
 double PixelDistribution::width_of(const Cells& sums, std::size_t cell) {
     return (cell + 1 < kCells ? sums[cell + 1] : kChancesABlock) - sums[cell];
 }
 
-PixelDistribution::Found PixelDistribution::find(std::span<const Step> steps, double u) {
-    const double at = kChances * u;
-    std::size_t step = steps[part_at(steps.size(), u)].guide;
-    while (step + 1 < steps.size() && steps[step + 1].before <= at) {
-        ++step;
+PixelDistribution::Found PixelDistribution::find(const Step* steps, std::size_t count, double u) {
+    const double at = kChances * u;  // below all of them
+    const auto whole = static_cast<std::uint32_t>(at);
+    const Step* step = steps + steps[part_at(count, u)].guide;
+    // Three at a time, without asking: most often it is one of these, and as often any.
+    for (int passed = kAfter; passed == kAfter; step += passed) {
+        passed =
+            (step[1].before <= whole ? 1 : 0) + (step[2].before <= whole ? 1 : 0) + (step[3].before <= whole ? 1 : 0);
     }
-    const double width = width_of(steps, step);
-    return {.step = step, .fraction = std::clamp((at - steps[step].before) / width, 0.0, kBelowOne), .width = width};
+    const double width = width_of(step);
+    return {.step = static_cast<std::size_t>(step - steps),
+            .fraction = std::clamp((at - step->before) / width, 0.0, kBelowOne),
+            .width = width};
 }
 
 PixelDistribution::Draw PixelDistribution::draw(const Vec2d& numbers) const {
-    return draw_in(find(rows_, numbers.x), numbers.y);
+    const Found row = find(rows_.data(), row_count_, numbers.x);
+    return draw_in(row, find(blocks_of(row.step), columns_, numbers.y));
 }
 
 void PixelDistribution::draw(std::span<const Vec2d> numbers, std::span<Draw> draws) const {
     constexpr std::size_t kAhead = 16;
     std::array<Found, kAhead> rows;
+    std::array<Found, kAhead> blocks;
     for (std::size_t begin = 0; begin < numbers.size(); begin += kAhead) {
-        const std::size_t end = std::min(numbers.size(), begin + kAhead);
-        for (std::size_t i = begin; i < end; ++i) {
-            Found& row = rows[i - begin];
-            row = find(rows_, numbers[i].x);
-            __builtin_prefetch(&blocks_of(row.step)[part_at(columns_, numbers[i].y)]);
+        const std::size_t count = std::min(numbers.size() - begin, kAhead);
+        for (std::size_t i = 0; i < count; ++i) {
+            rows[i] = find(rows_.data(), row_count_, numbers[begin + i].x);
+            __builtin_prefetch(blocks_of(rows[i].step) + part_at(columns_, numbers[begin + i].y));
         }
-        for (std::size_t i = begin; i < end; ++i) {
-            draws[i] = draw_in(rows[i - begin], numbers[i].y);
+        for (std::size_t i = 0; i < count; ++i) {
+            blocks[i] = find(blocks_of(rows[i].step), columns_, numbers[begin + i].y);
+            __builtin_prefetch(&cells_of(rows[i].step, blocks[i].step));
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            draws[begin + i] = draw_in(rows[i], blocks[i]);
         }
     }
 }
 
-PixelDistribution::Draw PixelDistribution::draw_in(const Found& row, double u) const {
-    const std::span<const Step> blocks = blocks_of(row.step);
-    const Found block = find(blocks, u);
-    const Cells& sums = cells_[blocks[block.step].cells];
+PixelDistribution::Draw PixelDistribution::draw_in(const Found& row, const Found& block) const {
+    const Cells& sums = cells_of(row.step, block.step);
     const double at = kChancesABlock * block.fraction;
     const auto whole = static_cast<std::uint16_t>(at);
-    std::size_t cell = 0;
-    for (std::size_t i = 1; i < kCells; ++i) {
-        cell += sums[i] <= whole ? 1 : 0;
+    std::uint16_t reached = 0;  // one at least: nothing stands before the first
+    for (std::size_t i = 0; i < kCells; ++i) {
+        reached = static_cast<std::uint16_t>(reached + (sums[i] <= whole ? 1 : 0));
     }
+    const std::size_t cell = std::size_t{reached} - 1;
     const double width = width_of(sums, cell);
     const double across = std::clamp((at - sums[cell]) / width, 0.0, kBelowOne);
     const double x = static_cast<double>(block.step * kAcross + cell % kAcross) + across;
     const std::size_t cell_row = row.step * kDown + cell / kAcross;
     const double y = static_cast<double>(cell_row) + row.fraction;
-    return {.at = {x / static_cast<double>(columns_ * kAcross), y / static_cast<double>(rows_.size() * kDown)},
+    return {.at = {x / static_cast<double>(columns_ * kAcross), y / static_cast<double>(row_count_ * kDown)},
             .pdf = density(row.width, block.width, width)};
 }
 
-double PixelDistribution::pdf(const Vec2d& at) const {
+PixelDistribution::Place PixelDistribution::place(const Vec2d& at) const {
     const std::size_t x = part_at(columns_ * kAcross, at.x);
-    const std::size_t y = part_at(rows_.size() * kDown, at.y);
-    const std::span<const Step> blocks = blocks_of(y / kDown);
-    const Cells& sums = cells_[blocks[x / kAcross].cells];
-    return density(width_of(rows_, y / kDown), width_of(blocks, x / kAcross),
-                   width_of(sums, y % kDown * kAcross + x % kAcross));
+    const std::size_t y = part_at(row_count_ * kDown, at.y);
+    return {.row = y / kDown, .column = x / kAcross, .cell = y % kDown * kAcross + x % kAcross};
+}
+
+double PixelDistribution::pdf(const Place& place) const {
+    return density(width_of(&rows_[place.row]), width_of(blocks_of(place.row) + place.column),
+                   width_of(cells_of(place.row, place.column), place.cell));
+}
+
+double PixelDistribution::pdf(const Vec2d& at) const {
+    return pdf(place(at));
+}
+
+void PixelDistribution::find_pdfs(std::span<const Vec2d> at, std::span<double> pdfs) const {
+    constexpr std::size_t kAhead = 16;
+    std::array<Place, kAhead> places;
+    for (std::size_t begin = 0; begin < at.size(); begin += kAhead) {
+        const std::size_t count = std::min(at.size() - begin, kAhead);
+        for (std::size_t i = 0; i < count; ++i) {
+            places[i] = place(at[begin + i]);
+            __builtin_prefetch(blocks_of(places[i].row) + places[i].column);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            __builtin_prefetch(&cells_of(places[i].row, places[i].column));
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            pdfs[begin + i] = pdf(places[i]);
+        }
+    }
 }
 
 double PixelDistribution::density(double row_width, double block_width, double cell_width) const {
     constexpr double kAll = double{kChances} * double{kChances} * double{kChancesABlock} / kCells;
-    return row_width * block_width * cell_width * (static_cast<double>(blocks_.size()) / kAll);
+    return row_width * block_width * cell_width * (static_cast<double>(columns_ * row_count_) / kAll);
 }
 
 }  // namespace lensproof::scene

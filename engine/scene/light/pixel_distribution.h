@@ -41,13 +41,14 @@ class PixelDistribution {
     /// The same of many, while memory brings what the next ones will read.
     void draw(std::span<const Vec2d> numbers, std::span<Draw> draws) const;
     [[nodiscard]] double pdf(const Vec2d& at) const;
+    void find_pdfs(std::span<const Vec2d> at, std::span<double> pdfs) const;
 
   private:
     static constexpr std::size_t kAcross = 8;
     static constexpr std::size_t kDown = 4;
     static constexpr std::size_t kCells = kAcross * kDown;
 
-    /// A row, or a block of a row.
+    /// A row, or a block of a row; after the last of them stand some that nothing falls in.
     struct Step {
         std::uint32_t before = 0;  // the sum of those before it
         std::uint16_t guide = 0;   // of as many equal parts of the whole as there are steps, where this one begins
@@ -61,18 +62,29 @@ class PixelDistribution {
         double fraction = 0.0;  // in [0, 1)
         double width = 0.0;
     };
-    [[nodiscard]] Draw draw_in(const Found& row, double u) const;
+    /// The block and the cell that a point lies in.
+    struct Place {
+        std::size_t row = 0;
+        std::size_t column = 0;
+        std::size_t cell = 0;
+    };
     [[nodiscard]] static std::size_t part_at(std::size_t steps, double u);
-    [[nodiscard]] static Found find(std::span<const Step> steps, double u);
-    [[nodiscard]] static double width_of(std::span<const Step> steps, std::size_t step);
+    [[nodiscard]] static Found find(const Step* steps, std::size_t count, double u);
+    [[nodiscard]] Draw draw_in(const Found& row, const Found& block) const;
+    [[nodiscard]] Place place(const Vec2d& at) const;
+    [[nodiscard]] double pdf(const Place& place) const;
+    [[nodiscard]] static double width_of(const Step* step) { return step[1].before - step[0].before; }
     [[nodiscard]] static double width_of(const Cells& sums, std::size_t cell);
-    static void fill(std::span<Step> steps, std::span<const double> weights);
+    static void fill(Step* steps, std::span<const double> weights);
     [[nodiscard]] double density(double row_width, double block_width, double cell_width) const;
-    [[nodiscard]] std::span<const Step> blocks_of(std::size_t row) const {
-        return std::span(blocks_).subspan(row * columns_, columns_);
+    [[nodiscard]] const Step* blocks_of(std::size_t row) const { return blocks_.data() + row * (columns_ + kAfter); }
+    [[nodiscard]] const Cells& cells_of(std::size_t row, std::size_t column) const {
+        return cells_[blocks_of(row)[column].cells];
     }
 
+    static constexpr std::size_t kAfter = 3;  // steps after the last
     std::size_t columns_ = 0;
+    std::size_t row_count_ = 0;
     std::vector<Step> rows_;
     std::vector<Step, LargePages<Step>> blocks_;   // row after row
     std::vector<Cells, LargePages<Cells>> cells_;  // the first even, for blocks that have none of their own

@@ -20,7 +20,8 @@ TexelPlace::Pair neighbours(double at, int count, Wrap wrap) {
     if (!std::isfinite(at)) {
         return {};
     }
-    const double inside = wrap == Wrap::repeat   ? at - std::floor(at)
+    const double inside = at >= 0.0 && at < 1.0  ? at
+                          : wrap == Wrap::repeat ? at - std::floor(at)
                           : wrap == Wrap::mirror ? std::abs(at - 2.0 * std::round(0.5 * at))
                                                  : std::clamp(at, 0.0, 1.0);
     const double pixel = inside * count - 0.5;

@@ -123,7 +123,7 @@ TEST(Environment, DrawsAndFindsManyAsOne) {
     }
     const auto expect_same = [](const MapPlace& a, const MapPlace& b) {
         EXPECT_EQ(a.map, b.map);
-        EXPECT_EQ(a.texels, b.texels);
+        EXPECT_EQ(a.at, b.at);
         EXPECT_EQ(a.pdf, b.pdf);
     };
     std::vector<MapDraw> draws(kMost);
