@@ -7,6 +7,9 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/base/file.h"
 #include "engine/base/write_file.h"
@@ -61,6 +64,28 @@ std::vector<Place> places() {
         all.push_back({{31.0 * uniform(random), 31.0 * uniform(random)}, 0.5 + 0.5 * uniform(random)});
     }
     return all;
+}
+
+/// The text of a lens that ships, with other words in the place of these.
+std::string changed(const std::string& lens, const std::vector<std::pair<std::string, std::string>>& words) {
+    std::string text = read_file(formats::find_lens_file(lens));
+    for (const auto& [old, now] : words) {
+        text.replace(text.find(old), old.size(), now);
+    }
+    return text;
+}
+
+// A kilometre behind its stop a double Gauss has regions that change from each node to the next, however near: it was
+// given 4097 nodes a wavelength, and took a quarter of a minute before the first sample.
+TEST(PupilMap, ALensThatWantsAllStepsHalvedIsGivenUp) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "mutated.toml";
+    write_file(file, changed("double-gauss-tronnier", {{"radius_mm =  29.475, thickness_mm =  3.76",  //
+                                                        "radius_mm = -29.475, thickness_mm =  0.1"},
+                                                       {"stop = true,         thickness_mm =  4.5",
+                                                        "stop = true,         thickness_mm =  1e6"}}));
+    const PupilMap map(band_of(optics::with_f_number(formats::load_lens(file.string()), 8.0), {550.0}), true, 22.5);
+    EXPECT_LE(map.size(), 129U);
 }
 
 // The pdf that a point is drawn with is that which the map states for it. Points at an edge of the region may be
