@@ -33,20 +33,30 @@ int spelling_distance(std::string_view a, std::string_view b) {
 
 namespace {
 
-/// Empty where none is near.
-std::string nearest_hint(const std::string& name, const std::vector<std::string>& known) {
+/// None where no candidate that `is_near(letters, candidate)` takes is there.
+template <class IsNear>
+const std::string* nearest_of(const std::string& name, const std::vector<std::string>& candidates,
+                              const IsNear& is_near) {
     constexpr std::size_t kLongest = 100;
     const std::string* nearest = nullptr;
     int least = static_cast<int>(kLongest);
-    for (const std::string& candidate : known) {
+    for (const std::string& candidate : candidates) {
         if (name.size() <= kLongest && candidate.size() <= kLongest) {
             const int letters = spelling_distance(name, candidate);
-            if (letters < least && letters <= std::max(1, static_cast<int>(candidate.size() / 3))) {
+            if (letters < least && is_near(letters, candidate)) {
                 least = letters;
                 nearest = &candidate;
             }
         }
     }
+    return nearest;
+}
+
+/// Empty where none is near.
+std::string nearest_hint(const std::string& name, const std::vector<std::string>& known) {
+    const std::string* nearest = nearest_of(name, known, [](int letters, const std::string& candidate) {
+        return letters <= std::max(1, static_cast<int>(candidate.size() / 3));
+    });
     return nearest == nullptr ? "" : fmt::format("; did you mean \"{}\"?", *nearest);
 }
 
@@ -59,6 +69,13 @@ std::string name_hint(const std::string& name, const std::vector<std::string>& k
         return hint;
     }
     return known.empty() || known.size() > kMostListed ? "" : fmt::format("; known are: {}", fmt::join(known, ", "));
+}
+
+std::string missing_name_hint(const std::string& missing, const std::vector<std::string>& there) {
+    const std::string* nearest = nearest_of(missing, there, [](int letters, const std::string& candidate) {
+        return 3 * letters < static_cast<int>(candidate.size());
+    });
+    return nearest == nullptr ? "" : fmt::format("; is \"{}\" meant to be it?", *nearest);
 }
 
 std::string complete_name_hint(const std::string& name, const std::vector<std::string>& known) {

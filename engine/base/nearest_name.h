@@ -14,6 +14,10 @@ int spelling_distance(std::string_view a, std::string_view b);
 /// most a third of its letters, or one; else, of ten names at most, "; known are: white, red"; else nothing.
 std::string name_hint(const std::string& name, const std::vector<std::string>& known);
 
+/// "; is \"shuter_s\" meant to be it?" where one of those that stand there is `missing` but for less than a third of
+/// its letters; else nothing.
+std::string missing_name_hint(const std::string& missing, const std::vector<std::string>& there);
+
 /// The nearest, where there is one, and all that are known, however many.
 std::string complete_name_hint(const std::string& name, const std::vector<std::string>& known);
 

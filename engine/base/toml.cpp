@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
 #include "engine/base/file.h"
@@ -130,6 +131,7 @@ const toml::node* TomlTable::get(const std::string& key) const {
 }
 
 bool TomlTable::has(const std::string& key) const {
+    asked_after_.insert(key);
     return get(key) != nullptr;
 }
 
@@ -141,6 +143,12 @@ std::vector<std::string> TomlTable::keys() const {
         }
     }
     return {names.begin(), names.end()};
+}
+
+std::vector<std::string> TomlTable::keys_not_taken() const {
+    std::vector<std::string> names = keys();
+    std::erase_if(names, [&](const std::string& name) { return taken_.contains(name); });
+    return names;
 }
 
 std::string TomlTable::stated() const {
@@ -198,7 +206,7 @@ const toml::node* TomlTable::find(const std::string& key) {
 const toml::node& TomlTable::require(const std::string& key) {
     const toml::node* node = find(key);
     if (node == nullptr) {
-        fail(key, "is missing");
+        fail(key, "is missing" + missing_name_hint(key, keys_not_taken()));
     }
     return *node;
 }
@@ -392,11 +400,11 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
 }
 
 void TomlTable::finish() const {
-    for (const std::string& name : keys()) {
-        if (!taken_.contains(name)) {
-            const std::vector<std::string> known(taken_.begin(), taken_.end());
-            fail(name, "is not a key that is known here" + complete_name_hint(name, known));
-        }
+    if (const std::vector<std::string> unknown = keys_not_taken(); !unknown.empty()) {
+        std::vector<std::string> known;
+        std::ranges::set_union(taken_, asked_after_, std::back_inserter(known));
+        std::erase(known, unknown.front());  // asked after, but of no use here
+        fail(unknown.front(), "is not a key that is known here" + complete_name_hint(unknown.front(), known));
     }
 }
 

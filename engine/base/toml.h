@@ -34,6 +34,7 @@ class TomlTable {
     /// `file` remains this table's.
     [[nodiscard]] TomlTable overlaid(const TomlTable& over) const;
 
+    /// Whether the key is there, which is no taking of it.
     [[nodiscard]] bool has(const std::string& key) const;
     /// Every key of the table, for a table whose keys are names.
     [[nodiscard]] std::vector<std::string> keys() const;
@@ -99,6 +100,7 @@ class TomlTable {
     explicit TomlTable(std::vector<Layer> layers) : layers_(std::move(layers)) {}
     const toml::node& require(const std::string& key);
     const toml::node* find(const std::string& key);
+    [[nodiscard]] std::vector<std::string> keys_not_taken() const;
     double checked_number(const toml::node& node, const std::string& key, const Bounds& bounds) const;
     /// The layer whose value of the key counts; the lowest where none has it.
     [[nodiscard]] const Layer& layer_of(const std::string& key) const;
@@ -106,6 +108,7 @@ class TomlTable {
 
     std::vector<Layer> layers_;  // the one that counts most first
     std::set<std::string> taken_;
+    mutable std::set<std::string> asked_after_;  // known names too, for whoever misspells one
 };
 
 }  // namespace lensproof

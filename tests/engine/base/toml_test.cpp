@@ -72,6 +72,21 @@ TEST(Toml, AMisspeltKeyIsOfferedItsNeighbour) {
         "a.toml:1: wombat: is not a key that is known here; known are: radius_mm, semi_diameter_mm, thickness_mm");
 }
 
+// Known is also what was only asked after, and what is missing may stand there misspelt.
+TEST(Toml, KeysAskedAfterAreKnownAndMissingOnesMayBeMisspelt) {
+    TomlTable asked = TomlTable::parse("semi_diam_mm = 3.0\n", "a.toml");
+    EXPECT_FALSE(asked.has("semi_diameter_mm"));
+    EXPECT_TRUE(says(complaint_about([&] { asked.finish(); }), "did you mean \"semi_diameter_mm\"?"));
+    TomlTable not_taken = TomlTable::parse("radius_mm = 3.0\n", "a.toml");
+    EXPECT_TRUE(not_taken.has("radius_mm"));
+    EXPECT_EQ(complaint_about([&] { not_taken.finish(); }),
+              "a.toml:1: radius_mm: is not a key that is known here; known are: ");
+    TomlTable misspelt = TomlTable::parse("square_mm = 4\nshuter_s = 1\n", "a.toml");
+    EXPECT_EQ(complaint_about([&] { misspelt.number("shutter_s"); }),
+              "a.toml:1: shutter_s: is missing; is \"shuter_s\" meant to be it?");
+    EXPECT_EQ(complaint_about([&] { misspelt.number("squares"); }), "a.toml:1: squares: is missing");
+}
+
 // A table over another: values, tables in tables, lists as a whole; and each complaint names the file that is to blame.
 TEST(Toml, OneTableOverAnother) {
     const TomlTable under = TomlTable::parse("a = 1\nb = 2\n[t]\nx = 3\ny = 4\n[[l]]\nz = 5\n[[l]]\nz = 6\n", "u.toml");
