@@ -53,9 +53,9 @@ const Notation& notation_of(const CsvTable& table) {
         notations(), [&](const Notation& notation) { return table.has(notation.columns.front()); });
     if (found == notations().end()) {
         throw InputError(
-            fmt::format("{}: the columns are {}, expected x_px, y_px and directions: right_ascension_deg and "
+            fmt::format("{}: the header is \"{}\", expected x_px, y_px and directions: right_ascension_deg and "
                         "declination_deg, azimuth_deg and altitude_deg, or dx, dy and dz",
-                        table.where_header(), fmt::join(table.header(), ", ")));
+                        table.where_header(), table.shown_header()));
     }
     std::vector<std::string> required = {"x_px", "y_px"};
     required.insert(required.end(), found->columns.begin(), found->columns.end());

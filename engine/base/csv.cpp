@@ -63,11 +63,15 @@ bool cut(std::string_view line, const Take& take) {
 
 /// A header for a message: of a line that is no list of columns' names, which another kind of file may begin with, no
 /// more than its first word.
-std::string shown_header(std::string_view line) {
+std::string shown_line(std::string_view line) {
     const bool is_list = std::ranges::all_of(line, [](unsigned char letter) {
         return std::isalnum(letter) != 0 || letter == '_' || letter == ',' || letter == '"';
     });
     return is_list ? printable(line) : printable(line.substr(0, line.find_first_of(" \t,"))) + "…";
+}
+
+std::string shown(const std::vector<std::string>& header) {
+    return shown_line(fmt::format("{}", fmt::join(header, ",")));
 }
 
 /// What a cell says: without the quotes around it, and those inside once.
@@ -89,8 +93,7 @@ std::string_view CsvRow::cell(std::string_view column) const {
     const auto found = std::ranges::find(table_->header, column);
     if (found == table_->header.end()) {
         throw InputError(fmt::format("{}:{}: the header is \"{}\", expected a column {} in it", table_->name,
-                                     table_->header_line,
-                                     shown_header(fmt::format("{}", fmt::join(table_->header, ","))), column));
+                                     table_->header_line, shown(table_->header), column));
     }
     return cells_[found - table_->header.begin()];
 }
@@ -155,7 +158,7 @@ CsvTable CsvTable::parse(std::string text, const std::filesystem::path& name) {
     });
     const auto refuse = [&](const std::string& complaint) {
         throw InputError(
-            fmt::format("{}: the header is \"{}\": {}", table.where_header(), shown_header(*line), complaint));
+            fmt::format("{}: the header is \"{}\": {}", table.where_header(), shown_line(*line), complaint));
     };
     if (!whole) {
         refuse("expected a quote to end with its cell");
@@ -185,6 +188,10 @@ bool CsvTable::has(std::string_view column) const {
     return std::ranges::find(table_->header, column) != table_->header.end();
 }
 
+std::string CsvTable::shown_header() const {
+    return shown(table_->header);
+}
+
 void CsvTable::expect_columns(const std::vector<std::string>& required,
                               const std::vector<std::string>& optional) const {
     const bool complete = std::ranges::all_of(required, [&](const std::string& column) { return has(column); });
@@ -193,10 +200,9 @@ void CsvTable::expect_columns(const std::vector<std::string>& required,
                std::ranges::find(optional, column) != optional.end();
     });
     if (!complete || !known) {
-        throw InputError(
-            fmt::format("{}: the header is \"{}\", expected \"{}\"{}", where_header(),
-                        shown_header(fmt::format("{}", fmt::join(table_->header, ","))), fmt::join(required, ","),
-                        optional.empty() ? "" : fmt::format(", and where wanted {}", fmt::join(optional, ", "))));
+        throw InputError(fmt::format(
+            "{}: the header is \"{}\", expected \"{}\"{}", where_header(), shown_header(), fmt::join(required, ","),
+            optional.empty() ? "" : fmt::format(", and where wanted {}", fmt::join(optional, ", "))));
     }
 }
 
@@ -243,8 +249,7 @@ std::optional<CsvRow> CsvTable::next() {
     }
     if (count != table_->header.size()) {
         throw InputError(fmt::format("{}:{}: {} cells, expected {} as in the header: {}", table_->name, line_, count,
-                                     table_->header.size(),
-                                     shown_header(fmt::format("{}", fmt::join(table_->header, ",")))));
+                                     table_->header.size(), shown(table_->header)));
     }
     return row;
 }

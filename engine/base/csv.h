@@ -69,6 +69,8 @@ class CsvTable {
     /// Throws InputError naming header and expectation unless every column of `required` is there, in any order, and
     /// no column but these and those of `optional`.
     void expect_columns(const std::vector<std::string>& required, const std::vector<std::string>& optional = {}) const;
+    /// The header as messages quote it: what is no list of names is cut after its first word.
+    [[nodiscard]] std::string shown_header() const;
     /// "file:line" of the header.
     [[nodiscard]] std::string where_header() const;
 

@@ -223,6 +223,8 @@ TEST(MeasureDirections, UnusableOnesAreRefused) {
     refused("one.png", {"none.csv"}, "none.csv");
     write_file(place.path() / "few.csv", "x_px,y_px,dx,dy,dz\n10,10,0,0,1\n20,20,0,0.1,1\n");
     refused("one.png", {"few.csv"}, "too few known directions are seen in any of 1 picture");
+    write_file(place.path() / "passwd", "root:x:0:0:root /root:/bin/bash\n");
+    refused("one.png", {"passwd"}, "the header is \"root:x:0:0:root…\"");
     formats::write_png(formats::make_image(kWidth, kHeight, {"Y"}), place.path() / "blank.png");
     write_file(place.path() / "blank.csv", "x_px,y_px,dx,dy,dz\n" + std::string("10,10,0,0,1\n"));
     refused("blank.png", {"blank.csv"}, "show no light within 8 px");
