@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kTemporaryStart = ".lensproof-";
+constexpr std::size_t kTemporaryDigits = 16;
 constexpr std::string_view kTemporaryMark = ".part";
 constexpr std::size_t kLongestExtension = 16;  // a longer one is no format's
 
@@ -112,12 +113,24 @@ class TemporaryFile {
     bool is_renamed_ = false;
 };
 
+/// Whether TemporaryFile makes such names.
+bool is_temporary_name(std::string_view name) {
+    if (!name.starts_with(kTemporaryStart)) {
+        return false;
+    }
+    name.remove_prefix(kTemporaryStart.size());
+    const std::size_t digits = std::min(name.find_first_not_of("0123456789abcdef"), name.size());
+    const std::string_view rest = name.substr(digits);
+    return digits == kTemporaryDigits && rest.starts_with(kTemporaryMark) &&
+           (rest == kTemporaryMark || rest[kTemporaryMark.size()] == '.');
+}
+
 /// Removes what killed processes left in a folder: temporary files that nobody has locked.
 void remove_leftovers(const fs::path& folder) {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
         const std::string name = entry.path().filename().string();
-        if (!name.starts_with(kTemporaryStart) || name.find(kTemporaryMark) == std::string::npos) {
+        if (!is_temporary_name(name) || !entry.is_regular_file(error)) {
             continue;
         }
         const int descriptor = ::open(entry.path().c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
@@ -181,7 +194,8 @@ void check_name(const fs::path& file) {
         }
     }
     // The temporary file's name takes the place of the last.
-    constexpr std::size_t kTemporaryName = kTemporaryStart.size() + 16 + kTemporaryMark.size() + kLongestExtension;
+    constexpr std::size_t kTemporaryName =
+        kTemporaryStart.size() + kTemporaryDigits + kTemporaryMark.size() + kLongestExtension;
     const std::size_t path = std::max(file.native().size(), file.parent_path().native().size() + 1 + kTemporaryName);
     if (path >= PATH_MAX) {
         throw InputError(fmt::format("{}: a path of {} bytes, expected at most {}", file.string(), file.native().size(),

@@ -8,6 +8,7 @@
 
 #include <fstream>
 #include <stdexcept>
+#include <vector>
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
@@ -48,16 +49,25 @@ TEST(WriteFile, TheTemporaryFileIsNewAndGoesWithItsFailure) {
 TEST(WriteFile, LeftoversGo) {
     const TestFolder folder;
     const auto path = [&](const char* name) { return folder.path() / name; };
-    for (const char* name :
-         {".lensproof-1.part.png", ".lensproof-2.part.png", ".lensproof-3.png", "4.part", "target"}) {
+    const char* const kLeft = ".lensproof-0123456789abcdef.part.png";
+    const char* const kLocked = ".lensproof-1123456789abcdef.part.png";
+    const char* const kLink = ".lensproof-2123456789abcdef.part";
+    const std::vector<const char*> kOthers = {".lensproof-3123456789abcdef.png",
+                                              ".lensproof-4123456789abcdef.parts-list", ".lensproof-user.part.txt",
+                                              "5.part", "target"};
+    for (const char* name : kOthers) {
         std::ofstream(path(name)) << "x";
     }
-    fs::create_symlink(path("target"), path(".lensproof-5.part"));
-    const int locked = ::open(path(".lensproof-2.part.png").c_str(), O_RDWR | O_CLOEXEC);
+    std::ofstream(path(kLeft)) << "x";
+    std::ofstream(path(kLocked)) << "x";
+    fs::create_symlink(path("target"), path(kLink));
+    const int locked = ::open(path(kLocked).c_str(), O_RDWR | O_CLOEXEC);
     ASSERT_EQ(::flock(locked, LOCK_EX), 0);
     write_file(path("a"), "a");
-    EXPECT_FALSE(fs::exists(path(".lensproof-1.part.png")));
-    for (const char* name : {".lensproof-2.part.png", ".lensproof-3.png", "4.part", "target", ".lensproof-5.part"}) {
+    EXPECT_FALSE(fs::exists(path(kLeft)));
+    EXPECT_TRUE(fs::exists(path(kLocked)));
+    EXPECT_TRUE(fs::exists(path(kLink)));
+    for (const char* name : kOthers) {
         EXPECT_TRUE(fs::exists(path(name))) << name;
     }
     EXPECT_EQ(read_file(path("target")), "x");
