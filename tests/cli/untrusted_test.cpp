@@ -88,7 +88,7 @@ TEST(Untrusted, RefusesReferencesThatLeaveTheFolder) {
     expect_refused(place, {"analyze", "in/l.toml", "--untrusted"}, {"l.toml", "else.csv", "--untrusted"});
 }
 
-// A buffer that lies elsewhere is not to be had by the process that reads the mesh.
+// A buffer that lies elsewhere is refused, and not to be had by the process that reads the mesh.
 TEST(Untrusted, MeshesReadNothingElse) {
     const Workplace place;
     put_scene(place);
@@ -98,7 +98,8 @@ TEST(Untrusted, MeshesReadNothingElse) {
   "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [0,0,0]}],
   "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "../else.bin"}]})");
     place.file("in/scene.toml", with(kScene, "m.obj", "m.gltf"));
-    expect_refused(place, {"render", "in/scene.toml", "-o", "a.exr", "--untrusted"}, {"m.gltf"});
+    expect_refused(place, {"render", "in/scene.toml", "-o", "a.exr", "--untrusted"},
+                   {"m.gltf", "else.bin", "--untrusted"});
 }
 
 // A picture that a mesh's material names is another file that is referred to.

@@ -321,7 +321,15 @@ bool is_gltf(const std::filesystem::path& file) {
 }
 
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
-    return files_are_distrusted() ? read_mesh_confined(file, options) : read_mesh_here(file, options);
+    if (!files_are_distrusted()) {
+        return read_mesh_here(file, options);
+    }
+    if (is_gltf(file)) {
+        for (const std::filesystem::path& buffer : gltf_references(file, false)) {
+            check_reference(file, buffer);
+        }
+    }
+    return read_mesh_confined(file, options);
 }
 
 MeshFile read_mesh_here(const std::filesystem::path& file, const MeshOptions& options) {
