@@ -72,13 +72,13 @@ int whole_number_within(double value, int low, int high) {
 std::string printable(std::string_view text) {
     constexpr std::size_t kShown = 100;
     if (text.size() <= kShown) {
-        return visible(text);
+        return visible_in_line(text);
     }
     std::size_t end = kShown;
     while (end > kShown - 4 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) {
         --end;  // not within a letter
     }
-    return visible(text.substr(0, end)) + "…";
+    return visible_in_line(text.substr(0, end)) + "…";
 }
 
 }  // namespace lensproof

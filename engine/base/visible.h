@@ -10,4 +10,7 @@ namespace lensproof {
 /// U+2060 to U+206F, U+FEFF). Bytes that are no UTF-8 become U+FFFD.
 std::string visible(std::string_view text);
 
+/// The same with line feeds written out too: what stands in a line of somebody else's words begins none of its own.
+std::string visible_in_line(std::string_view text);
+
 }  // namespace lensproof

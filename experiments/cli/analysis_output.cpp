@@ -8,6 +8,7 @@
 
 #include "engine/base/angle.h"
 #include "engine/base/json.h"
+#include "engine/base/visible.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/findings_text.h"
 
@@ -258,7 +259,7 @@ Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& s
 
 std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
                           const analysis::LensAnalysis& analysis) {
-    std::string text = lens.name + "\n";
+    std::string text = visible_in_line(lens.name) + "\n";
     text += findings_text(findings_of(lens));
     text += fmt::format(
         "At {:.7g} nm, object at {}:\n", settings.reference_wavelength_nm,

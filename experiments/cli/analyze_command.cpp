@@ -95,7 +95,7 @@ int run_analyze(const AnalyzeOptions& options) {
         write_analysis_plots(options, prescription, lens, settings, analysis);
     }
     if (prints_text(options.common)) {
-        print("{}{}", analysis_text(lens, settings, analysis), glare ? veiling_glare_text(*glare) : "");
+        show(analysis_text(lens, settings, analysis) + (glare ? veiling_glare_text(*glare) : ""));
     }
     Json json = analysis_json(lens, settings, analysis);
     if (glare) {

@@ -125,7 +125,8 @@ void print_section(const check::CheckReport& report, check::ReportSection sectio
         }
     }
     if (!findings.empty()) {
-        print("{}:\n{}", heading, findings_text(findings));
+        print("{}:\n", heading);
+        show(findings_text(findings));
     }
 }
 

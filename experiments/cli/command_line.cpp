@@ -263,8 +263,8 @@ int Program::run(const std::vector<std::string>& arguments) {
         return app_->exit(success);  // --help, --version
     } catch (const CLI::ParseError& error) {
         const auto asked = app_->get_subcommands();
-        throw InputError(fmt::format("{}\nTry: {} {}--help", complaint(*app_, error), name_,
-                                     asked.empty() ? "" : asked.front()->get_name() + " "));
+        throw UsageError(complaint(*app_, error),
+                         fmt::format("Try: {} {}--help", name_, asked.empty() ? "" : asked.front()->get_name() + " "));
     }
     return status_;
 }

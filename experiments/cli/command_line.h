@@ -6,7 +6,10 @@
 #include <iosfwd>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "engine/base/input_error.h"
 
 namespace CLI {
 class App;
@@ -14,6 +17,16 @@ class Option;
 }  // namespace CLI
 
 namespace lensproof::cli {
+
+/// A command line that cannot be used, with a line that says where to read how it can.
+class UsageError : public InputError {
+  public:
+    UsageError(const std::string& complaint, std::string hint) : InputError(complaint), hint_(std::move(hint)) {}
+    [[nodiscard]] const std::string& hint() const { return hint_; }
+
+  private:
+    std::string hint_;
+};
 
 /// What the text given to an option has to be.
 struct OptionCheck {

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "engine/base/visible.h"
+
 namespace lensproof::cli {
 
 namespace {
@@ -47,7 +49,8 @@ std::string ranges_text(const std::vector<int>& numbers) {
 }
 
 std::string line(const optics::Finding& finding, const std::string& where, std::string_view message) {
-    return fmt::format("  {:7} {:10} {}: {}", optics::severity_name(finding.severity), where, finding.code, message);
+    return fmt::format("  {:7} {:10} {}: {}", optics::severity_name(finding.severity), where, finding.code,
+                       visible_in_line(message));
 }
 
 bool says_the_same(const optics::Finding& a, const optics::Finding& b) {

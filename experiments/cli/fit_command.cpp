@@ -61,9 +61,9 @@ void print_undetermined(const calibration::LensExplanation& found) {
     bool is_first = true;
     for (const calibration::OpenCombination& open : found.undetermined) {
         if (open.shares.size() > 1) {
-            print("{}",
-                  is_first ? "\nThey cannot tell these apart, changed together by so much (in tolerances):\n" : "");
-            is_first = false;
+            if (std::exchange(is_first, false)) {
+                print("\nThey cannot tell these apart, changed together by so much (in tolerances):\n");
+            }
             print("  ± {:<5.2f} of {}\n", open.standard_error, shares_text(open));
         }
     }

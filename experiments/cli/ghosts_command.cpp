@@ -274,7 +274,7 @@ int run_ghosts(const GhostsOptions& options) {
         write_plot(options, analysed, settings, survey);
     }
     if (prints_text(options.common)) {
-        print("{}", survey_text(options, analysed.lens, settings, survey));
+        show(survey_text(options, analysed.lens, settings, survey));
     }
     write_json_result(options.common, survey_json(options, analysed.lens, settings, survey));
     return kDone;

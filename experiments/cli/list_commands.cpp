@@ -95,7 +95,8 @@ void print_lens(const Json& json) {
     for (const Json& position : json["zoom"]) {
         print_figures(fmt::format("{} at {}", kIndent, position["name"].text()), position, "");
     }
-    print("{} {}\n{}\n\n", kIndent, json["name"].text(), indented_lines(json["source"].text()));
+    print("{} {}\n", kIndent, json["name"].text());
+    show(indented_lines(json["source"].text()) + "\n\n");
 }
 
 int list_lenses(const CommonOptions& options) {

@@ -21,8 +21,11 @@ namespace lensproof::cli {
 namespace {
 
 /// Says why the program ends. Where standard error is closed too, the exit status has to do.
-void say(const std::string& message) {
-    print_message("lensproof: {}\n", message);
+void say(const Outcome& outcome) {
+    print_message("lensproof: {}\n", outcome.message);
+    if (!outcome.hint.empty()) {
+        print_message("{}\n", outcome.hint);
+    }
 }
 
 /// A standard stream that is closed would lend its number to the next file opened, and that file would get the text.
@@ -48,7 +51,8 @@ int flushed(int status) {
     if ((std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) || has_reader_gone()) {
         return status;
     }
-    say(fmt::format("standard output cannot be written: {}", std::strerror(errno != 0 ? errno : EIO)));
+    say({.status = kInternalFailure,
+         .message = fmt::format("standard output cannot be written: {}", std::strerror(errno != 0 ? errno : EIO))});
     return kInternalFailure;
 }
 
@@ -76,6 +80,6 @@ int main(int argc, char** argv) {
     if (outcome.message.empty()) {
         return lensproof::cli::flushed(outcome.status);
     }
-    lensproof::cli::say(outcome.message);
+    lensproof::cli::say(outcome);
     return outcome.status;
 }

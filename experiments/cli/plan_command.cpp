@@ -36,7 +36,7 @@ void print_plan(const Plan& plan) {
     for (const std::string& refused : plan.refused) {
         print("refused: {}\n", refused);
     }
-    print("{}\n", plan_text(plan));
+    show(plan_text(plan) + "\n");
     print("checked on other seeds: {} px, {} EV, {} CIEDE2000 from the full model\n", with_error(plan.checked.px),
           with_error(plan.checked.ev), with_error(plan.checked.ciede2000));
     print("probes took {:.2g} s\n", plan.probe_seconds);

@@ -82,6 +82,8 @@ int run(const std::vector<std::string>& arguments, std::ostream& result) {
 Outcome outcome_of(const std::function<int()>& work) {
     try {
         return {.status = work(), .message = {}};
+    } catch (const UsageError& error) {
+        return {.status = kUnusableInput, .message = error.what(), .hint = error.hint()};
     } catch (const InputError& error) {
         return {.status = kUnusableInput, .message = error.what()};
     } catch (const std::filesystem::filesystem_error& error) {

@@ -11,6 +11,7 @@ namespace lensproof::cli {
 struct Outcome {
     int status = 0;       // an ExitStatus (command.h)
     std::string message;  // why, where it failed; empty where it did what it was asked for
+    std::string hint{};   // and a line that says where to read more; empty: there is none
 };
 
 /// What work() returns; or what became of it where it threw, which is said of InputError and of any std::exception.

@@ -22,7 +22,7 @@ double seconds_since(std::chrono::steady_clock::time_point then) {
 }
 
 ProgressBar::ProgressBar(std::string_view label, bool quiet)
-    : label_(visible(label)),
+    : label_(visible_in_line(label)),
       shown_(!quiet && ::isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {}
 

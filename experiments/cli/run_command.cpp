@@ -125,7 +125,7 @@ void say_what_was_kept(const RunOptions& options, const findings::Steps& steps, 
 int tell_plan(const RunOptions& options, const runner::Experiment& experiment, const findings::RunSettings& settings) {
     const std::vector<AwaitedStudy> studies = awaited_studies(experiment, settings);
     if (prints_text(options.common)) {
-        print("{}", plan_text(studies, options.is_dry));
+        show(plan_text(studies, options.is_dry));
     }
     write_json_result(options.common, plan_json(studies));
     return kDone;
@@ -249,7 +249,7 @@ int run(const RunOptions& options) {
     say_failures(found.failures);
     if (prints_text(options.common)) {
         print_checks(found.checks);
-        print("{}", earlier ? runner::against_text(report["against"]) : "");
+        show(earlier ? runner::against_text(report["against"]) : "");
         print("{}: {}\n", findings::verdict_name(findings::overall(found)), (delivery.place / "report.html").string());
     }
     write_json_result(options.common, report);

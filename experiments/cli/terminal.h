@@ -2,7 +2,11 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
+#include <type_traits>
+
+#include "engine/base/visible.h"
 
 namespace lensproof::cli {
 
@@ -11,16 +15,31 @@ namespace lensproof::cli {
 void show(std::string_view text);
 void show_message(std::string_view text);
 
-/// The same of a format and what goes into it, to standard output: what a command found.
+/// What goes into a format, if it is a text as one that begins no line of its own.
+template <class T>
+auto in_line(const T& value) {
+    if constexpr (std::is_convertible_v<const T&, std::string_view>) {
+        return visible_in_line(value);
+    } else {
+        return value;
+    }
+}
+
+template <class... Values>
+std::string formatted(std::string_view format, const Values&... values) {
+    return fmt::vformat(format, fmt::make_format_args(values...));
+}
+
+/// The same of a format and what goes into it, each `in_line`, to standard output: what a command found.
 template <class... Args>
 void print(fmt::format_string<const Args&...> format, const Args&... args) {
-    show(fmt::format(format, args...));
+    show(formatted({fmt::string_view(format).data(), fmt::string_view(format).size()}, in_line(args)...));
 }
 
 /// To standard error: what there is to know of it.
 template <class... Args>
 void print_message(fmt::format_string<const Args&...> format, const Args&... args) {
-    show_message(fmt::format(format, args...));
+    show_message(formatted({fmt::string_view(format).data(), fmt::string_view(format).size()}, in_line(args)...));
 }
 
 }  // namespace lensproof::cli

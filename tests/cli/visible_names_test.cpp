@@ -1,6 +1,8 @@
 // tests/cli/visible_names_test.cpp — names that want to steer the terminal: whoever chose them, wherever they come out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/base/visible.h"
 #include "tests/cli/program.h"
 #include "tests/cli/trace_table.h"
@@ -60,6 +62,26 @@ TEST_F(VisibleNames, OfPicturesAndReports) {
     expect_shown({"measure", pictures.string(), "--chart", kName + "-chart.toml", "--no-self-test", "-o", "p.json"});
     expect_shown({"export", "p.json", "--to", "opencv", "-o", kName + ".yaml"});
     expect_shown({"compare", "p.json", kName + ".json"}, 2);
+}
+
+// A line feed in a name begins no line of the program's: not where it fails, and not where it finds something.
+TEST(Names, BeginNoLines) {
+    const Workplace place;
+    const std::string name = "a\nlensproof: all is well\n.toml";
+    EXPECT_TRUE(says(place.run({"analyze", name}).err, R"(a\u000alensproof: all is well\u000a.toml)"));
+    place.file(name, kSinglet);
+    for (const char* command : {"check", "analyze", "nonsense"}) {
+        const Outcome outcome = place.run({command, name});
+        EXPECT_FALSE(says(outcome.out + outcome.err, "\nlensproof: all is well")) << outcome.out << outcome.err;
+    }
+    place.file("lens.toml", with(kSinglet, "\"singlet\"", R"("a\nlensproof: all is well")"));
+    for (const char* command : {"check", "analyze"}) {
+        const Outcome outcome = place.run({command, "lens.toml"});
+        EXPECT_FALSE(says(outcome.out + outcome.err, "\nlensproof: all is well")) << outcome.out << outcome.err;
+    }
+    place.file("scene.toml", small_scene());
+    const Outcome refused = place.run({"render", "scene.toml", "-o", name});
+    EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
 }
 
 // A profile is named after a photo, which what is wrong with the profile is not said of.

@@ -80,7 +80,7 @@ class ObjCheck {
             ++checked_.lines_and_points;
         } else if (words[0] == "o" || words[0] == "g" || words[0] == "usemtl") {
             const std::string_view name = trimmed(trimmed(line).substr(words[0].size()));
-            add_line(words[0], visible(name));
+            add_line(words[0], visible_in_line(name));
         }
     }
 
