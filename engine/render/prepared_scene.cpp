@@ -6,11 +6,26 @@
 #include <utility>
 
 #include "engine/base/hash.h"
+#include "engine/base/input_error.h"
 #include "engine/render/integrators/chart_tracer.h"
 #include "engine/render/stray/lights_in_lens.h"
 #include "engine/scene/scene_build.h"
 
 namespace lensproof::render {
+
+namespace {
+
+/// Complaints say that they are about it.
+template <class... Arguments>
+Camera made_camera(Arguments&&... arguments) {
+    try {
+        return Camera(std::forward<Arguments>(arguments)...);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("camera: {}", error.what()));
+    }
+}
+
+}  // namespace
 
 PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
                              PassIntegrators integrators, const std::optional<PixelFilter>& stray_filter,
@@ -20,7 +35,7 @@ PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter,
       stray_filter_(stray_filter.value_or(filter)),
       cache_(cache),
       integrators_(setup.chart ? PassIntegrators{.usual = &integrator_named("chart")} : std::move(integrators)),
-      camera_(setup.camera, setup.spectral, filter, cache, integrators_.has_splats(), std::move(device)),
+      camera_(made_camera(setup.camera, setup.spectral, filter, cache, integrators_.has_splats(), std::move(device))),
       world_(make_world()) {
     if (!camera_.clamp_note().empty()) {
         remarks_.push_back(camera_.clamp_note());

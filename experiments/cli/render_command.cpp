@@ -39,15 +39,15 @@ render::PixelFilter filter_of(const std::optional<render::RawSensor>& sensor, co
     return render::pixel_aperture(*sensor);
 }
 
-/// What is wrong with the scene names its place in the file; what the camera's lens refuses is said of the camera.
+/// What is wrong with the scene names its place in the file; what is wrong with the camera or a file that it names is
+/// said of the scene.
 template <class Make>
 auto said_of_scene(const RenderJobOptions& options, const Make& make) {
     try {
         return make();
     } catch (const InputError& error) {
         const std::string message = error.what();
-        throw InputError(message.starts_with(options.scene) ? message
-                                                            : fmt::format("{}: camera: {}", options.scene, message));
+        throw InputError(message.starts_with(options.scene) ? message : fmt::format("{}: {}", options.scene, message));
     }
 }
 

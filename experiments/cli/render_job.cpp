@@ -262,10 +262,15 @@ Json write_so_far(States passes, render::FilmNotes notes, const fs::path& checkp
     return {{"exr", exr}, {"png", png}};
 }
 
+/// Where an interrupted render is kept.
+std::string checkpoint_name(const RenderJobOptions& options, const RenderFiles& files) {
+    return options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
+}
+
 /// Saves what there is, and says how to go on.
 int end_early(Json json, States passes, const render::FilmNotes& notes, const RenderJobOptions& options,
               const RenderFiles& files) {
-    const std::string checkpoint = options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
+    const std::string checkpoint = checkpoint_name(options, files);
     const Delivery delivery = write_somewhere(places_for(checkpoint, options, files), [&](const fs::path& place) {
         render::write_checkpoint(place, notes.identity, passes);
     });
@@ -370,8 +375,10 @@ RenderFiles render_files(const RenderJobOptions& options) {
         }
         check_output_name(options.preview);
     }
-    if (!options.checkpoint.empty()) {
-        check_output_name(options.checkpoint);
+    // If it is interrupted, these are written too.
+    const std::string checkpoint = checkpoint_name(options, files);
+    for (const std::string& name : {checkpoint, checkpoint + ".exr", checkpoint + ".png"}) {
+        check_output_name(name);
     }
     return files;
 }

@@ -10,6 +10,7 @@ import argparse
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import signal
@@ -37,6 +38,35 @@ distance_mm = 10000.0
 [render]
 samples_per_pixel = 64
 layers = 4
+"""
+MESH_SCENE = """[camera]
+model = "pinhole"
+focal_length_mm = 50.0
+f_number = 8.0
+focus_distance_mm = 3000.0
+position_mm = [0.0, 0.0, 3000.0]
+look_at_mm = [0.0, 0.0, 0.0]
+up = [0.0, 1.0, 0.0]
+sensor_mm = [36.0, 24.0]
+pixels = [6, 4]
+shutter_s = 0.01
+iso = 100.0
+response = "cie-1931"
+[render]
+samples_per_pixel = 1
+layers = 4
+[[objects]]
+shape = "mesh"
+file = "{mesh}"
+material = "grey"
+[[materials]]
+name = "grey"
+kind = "diffuse"
+reflectance = 0.5
+[[lights]]
+kind = "environment"
+luminance_cd_m2 = 1.0
+illuminant = "D65"
 """
 RENDER = ["render", "scene.toml", "--quiet"]
 
@@ -106,15 +136,43 @@ def mutants_of(reader, count, fuzz):
 
 
 def bombs(place, _count):
-    """Files of a few kilobytes that promise gigabytes, and that overrun their readers: refused in 2 GiB and 20 s."""
+    """Pictures and meshes, files of a few kilobytes that promise gigabytes or overrun their readers among them: read or
+    refused in 3 GB and 20 s."""
     failures = []
-    files = sorted(f for f in (CORPUS / "picture").iterdir() if not f.name.endswith(("png", "hdr")) or "bomb" in f.name)
-    for file in files:
+    pictures = sorted((CORPUS / "picture").iterdir())
+    commands = [(file.name, ["compare", str(file), str(file)]) for file in pictures]
+    for mesh in sorted(f for reader in ("gltf", "glb", "obj", "ply") for f in (CORPUS / reader).iterdir()):
+        scene = f"{mesh.name}.toml"
+        place.write(mesh.name, mesh.read_bytes())
+        place.write(scene, MESH_SCENE.format(mesh=mesh.name).encode())
+        commands.append((mesh.name, ["render", scene, "--quiet", "-o", "mesh.exr"]))
+    for name, command in commands:
         for more in ([], ["--untrusted"]):
-            status, said = place.run("compare", str(file), str(file), *more, mib=None if more else 3000, seconds=20)
+            status, said = place.run(*command, *more, mib=None if more else 3000, seconds=20)
             if status not in (0, 2):
-                failures.append(f"{file.name}: {status} {said}")
-    return 2 * len(files), failures
+                failures.append(f"{name}: {status} {said}")
+    return 2 * len(commands), failures
+
+
+def mutated_lenses(place, count):
+    """Lenses with numbers that are no longer what they were: refused, or analysed and rendered in time."""
+    failures = []
+    chance = random.Random(5)
+    lenses = sorted((pathlib.Path(__file__).resolve().parents[2] / "lenses").glob("*.toml"))
+    number = re.compile(r"(?<==)( *)(-?\d+\.?\d*)(?=[ ,}])")
+    for _ in range(count):
+        text = chance.choice(lenses).read_text()
+        for _ in range(chance.randrange(1, 4)):
+            match = chance.choice(list(number.finditer(text)))
+            value = chance.choice(["0", "1e-9", "1e6", "1e7", "0.1", "-" + match[2].lstrip("-")])
+            text = f"{text[:match.start(2)]}{value}{text[match.end(2):]}"
+        place.write("lens.toml", text)
+        place.write("scene.toml", SCENE.replace("[32, 24]", "[8, 6]").replace('"tessar"', '"lens.toml"'))
+        for command in (["analyze", "lens.toml"], [*RENDER, "-o", "a.exr"]):
+            status, said = place.run(*command, seconds=60)
+            if status not in (0, 1, 2):
+                failures.append(f"{command[0]}: {status} {said}\n{text}")
+    return 2 * count, failures
 
 
 def kills(place, count):
@@ -234,7 +292,7 @@ def failing_calls(place, count):
 
 # What is attacked, how often at scale 1, and how.
 READERS = {reader.name: 300 if reader.name == "raw_picture" else 3000 for reader in sorted(CORPUS.iterdir())}
-ATTACKS = {"bombs and overruns": (bombs, 1), "kills": (kills, 8), "threads": (threads, 2),
+ATTACKS = {"bombs and overruns": (bombs, 1), "mutated lenses": (mutated_lenses, 40), "kills": (kills, 8), "threads": (threads, 2),
            "damaged caches": (caches, 8), "damaged shards": (shards, 16), "damaged checkpoints": (checkpoints, 8),
            "failing calls": (failing_calls, 6)}
 

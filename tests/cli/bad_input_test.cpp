@@ -210,6 +210,14 @@ TEST(BadLens, NamesTheLineTheKeyAndWhatItHolds) {
         {"no radius", "radius_mm =  50.0", "radius_mm = nan", {":5:", "radius_mm", "nan", "inf"}},
         {"unknown glass", "BK7", "UNOBTAINIUM", {":5:", "glass", "UNOBTAINIUM", "lensproof glasses"}},
         {"unknown key", "radius_mm =  50.0", "radus_mm = 50.0", {":5:", "radus_mm", "not a key", "thickness_mm"}},
+        {"a key that need not be there",
+         "semi_diameter_mm = 10.0",
+         "semi_diam_mm = 10.0",
+         {":5:", "did you mean \"semi_diameter_mm\"?"}},
+        {"a key that must",
+         "thickness_mm =  5.0",
+         "thicknes_mm = 5.0",
+         {"thickness_mm: is missing", "\"thicknes_mm\""}},
         {"no stop", "stop = true", "radius_mm = inf", {"0 aperture stops"}},
         {"a mirror of glass",
          "semi_diameter_mm =  8.0",
@@ -232,6 +240,7 @@ TEST(BadScene, NamesTheLineTheKeyAndWhatItHolds) {
         {"oblong pixels", "[8, 6]", "[8, 7]", {":6:", "pixels", "square"}},
         {"unknown lens", "\"tessar\"", "\"nonesuch\"", {"camera", "nonesuch", "petzval"}},
         {"misspelt key", "iso = 100.0", "iso = 100.0\nisso = 1", {":9:", "isso"}},
+        {"misspelt setting", "samples_per_pixel", "sample_per_pixel", {":20:", "\"samples_per_pixel\"?"}},
         {"no size of squares", "560.0", "nan", {":14:", "square_mm", "nan"}},
         {"no distance", "distance_mm = 10000.0\n\n[render]", "distance_mm = 0\n[render]", {"distance_mm"}},
         {"no samples", "samples_per_pixel = 4", "samples_per_pixel = 0", {":20:", "samples_per_pixel", "0"}},
@@ -333,6 +342,11 @@ TEST(BadOutput, IsRefusedBeforeTheWork) {
         expect_refused(place, {"render", "scene.toml", "-o", out}, {out});
     }
     expect_refused(place, {"render", "scene.toml", "-o", "beside.exr"}, {"beside.png"});
+    // Where it would be kept if it were interrupted, with the picture so far beside it.
+    const std::string long_name(240, 'x');
+    expect_refused(place, {"render", "scene.toml", "-o", long_name + ".exr"}, {".exr.checkpoint.exr", "255"});
+    expect_refused(place, {"render", "scene.toml", "-o", "a.exr", "--checkpoint", long_name + "123456789012"},
+                   {"123456789012.exr", "255"});
 }
 
 }  // namespace lensproof::bad_input_test
