@@ -13,6 +13,8 @@
 
 namespace lensproof::formats {
 
+using namespace std::string_view_literals;
+
 namespace {
 
 constexpr std::size_t kCoefficients = 64;
@@ -27,6 +29,30 @@ using Table = std::array<int, kCoefficients>;
 int byte_at(std::string_view bytes, std::size_t place) {
     return place < bytes.size() ? static_cast<unsigned char>(bytes[place]) : 0;
 }
+
+/// Calls see(marker, content) for each mark with the content of its segment, which of some is empty, up to the end or
+/// until it says false. From mark to mark, over what a scan's bytes are between (B.1.1): those hold no 0xFF but before
+/// a 0 or a restart.
+template <class See>
+void for_each_segment(std::string_view file, const See& see) {
+    constexpr int kEnd = 0xD9;
+    for (std::size_t at = file.find('\xFF', 2); at < file.size(); at = file.find('\xFF', at)) {
+        const int marker = byte_at(file, at + 1);
+        if (marker == 0xFF) {
+            ++at;
+            continue;
+        }
+        const bool is_alone = marker <= 1 || (marker >= 0xD0 && marker <= 0xD8);
+        const std::size_t length = is_alone ? 0 : 256 * byte_at(file, at + 2) + byte_at(file, at + 3);
+        const std::size_t content = std::min(at + 4, file.size());
+        if (marker == kEnd || !see(marker, file.substr(content, length > 2 ? length - 2 : 0))) {
+            return;
+        }
+        at += 2 + length;
+    }
+}
+
+constexpr int kScan = 0xDA;
 
 /// Table 0 of a DQT segment's content (B.2.4.1); none where it holds others only, or is cut off.
 std::optional<Table> first_table(std::string_view content) {
@@ -47,27 +73,44 @@ std::optional<Table> first_table(std::string_view content) {
     return std::nullopt;
 }
 
-/// Segments follow one another up to the first scan (B.1.1).
+/// Before the first scan.
 std::optional<Table> luminance_table(std::string_view file) {
-    if (!file.starts_with("\xFF\xD8")) {
-        return std::nullopt;
-    }
     constexpr int kDqt = 0xDB;
-    constexpr int kScan = 0xDA;
-    for (std::size_t at = 2; at + 4 <= file.size() && byte_at(file, at) == 0xFF;) {
-        const int marker = byte_at(file, at + 1);
-        const int length = 256 * byte_at(file, at + 2) + byte_at(file, at + 3);
-        if (marker == kScan || length < 2) {
-            break;
-        }
-        if (marker == kDqt) {
-            if (const auto table = first_table(file.substr(at + 4, static_cast<std::size_t>(length) - 2))) {
-                return table;
-            }
-        }
-        at += 2 + static_cast<std::size_t>(length);
+    std::optional<Table> table;
+    if (file.starts_with("\xFF\xD8")) {
+        for_each_segment(file, [&](int marker, std::string_view content) {
+            table = marker == kDqt ? first_table(content) : std::nullopt;
+            return marker != kScan && !table;
+        });
     }
-    return std::nullopt;
+    return table;
+}
+
+/// The reader compares names with texts that end in a 0, and takes an IPTC block for as long as it says that it is,
+/// however short the segment is.
+std::string metadata_fault(int marker, std::string_view content) {
+    constexpr int kApp1 = 0xE1;
+    constexpr int kApp13 = 0xED;
+    if (marker == kApp1 && (content == "Exif"sv || content == "http://ns.adobe.com/xap/1.0/"sv)) {
+        return "metadata that end within their name";
+    }
+    constexpr std::string_view kIptc =
+        "Photoshop 3.0\0"
+        "8BIM\4\4"sv;
+    constexpr std::size_t kHead = kIptc.size() + 4;  // then two bytes say the length
+    if (marker != kApp13 || kIptc.substr(0, content.size()) != content.substr(0, kIptc.size())) {
+        return "";
+    }
+    const std::size_t stated = 256 * byte_at(content, kHead) + byte_at(content, kHead + 1);
+    return kHead + 2 + stated <= content.size()
+               ? ""
+               : fmt::format("an IPTC block of {} bytes in a segment of {}", stated, content.size());
+}
+
+/// The last mark (EOI) comes late in the file; that of the small picture in its header comes early.
+bool is_cut_off(std::string_view file) {
+    const std::size_t end = file.rfind("\xFF\xD9");
+    return end == std::string_view::npos || end < file.size() / 2;
 }
 
 /// libjpeg's rule: half the quality doubles an entry below 50, and none is left of it at 100.
@@ -98,27 +141,29 @@ std::optional<int> jpeg_quality(std::string_view file) {
     return best;
 }
 
-bool is_cut_off(std::string_view file) {
-    const std::size_t end = file.rfind("\xFF\xD9");
-    return end == std::string_view::npos || end < file.size() / 2;
+int scan_count(std::string_view file) {
+    int scans = 0;
+    for_each_segment(file, [&](int marker, std::string_view) {
+        scans += marker == kScan ? 1 : 0;
+        return true;
+    });
+    return scans;
 }
 
-int scan_count(std::string_view file) {
-    constexpr int kScan = 0xDA;
-    constexpr int kEnd = 0xD9;
-    int scans = 0;
-    // From mark to mark, over what a scan's bytes are between (B.1.1): those hold no 0xFF but before a 0 or a restart.
-    for (std::size_t at = file.find('\xFF', 2); at < file.size(); at = file.find('\xFF', at)) {
-        const int marker = byte_at(file, at + 1);
-        if (marker == kEnd) {
-            break;
-        }
-        scans += marker == kScan ? 1 : 0;
-        const bool is_alone = marker <= 1 || (marker >= 0xD0 && marker <= 0xD8);
-        const std::size_t content = is_alone ? 0 : 256 * byte_at(file, at + 2) + byte_at(file, at + 3);
-        at += marker == 0xFF ? 1 : 2 + content;
+std::string jpeg_fault(std::string_view file) {
+    constexpr int kMostScans = 100;  // libjpeg writes 10
+    if (is_cut_off(file)) {
+        return "the file is cut off: a JPEG without its end";
     }
-    return scans;
+    if (const int scans = scan_count(file); scans > kMostScans) {
+        return fmt::format("a JPEG of {} scans, expected at most {}", scans, kMostScans);
+    }
+    std::string fault;
+    for_each_segment(file, [&](int marker, std::string_view content) {
+        fault = metadata_fault(marker, content);
+        return fault.empty();
+    });
+    return fault;
 }
 
 Image after_jpeg(const Image& image, int quality) {

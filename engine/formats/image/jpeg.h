@@ -1,6 +1,7 @@
 // engine/formats/image/jpeg.h — what JPEG does to a picture.
 #pragma once
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "engine/formats/image/image.h"
@@ -17,12 +18,12 @@ Image after_jpeg(const Image& image, int quality);
 /// without that table.
 std::optional<int> jpeg_quality(std::string_view file);
 
-/// Whether the last mark (EOI) of a JPEG of these bytes, which comes late in the file, is missing; that of the small
-/// picture in its header comes early.
-bool is_cut_off(std::string_view file);
-
 /// How often the picture is gone over (SOS): once, or about ten times where it is progressive. Each takes a reader as
 /// long as the whole picture, however few bytes it has.
 int scan_count(std::string_view file);
+
+/// What keeps a JPEG of these bytes from its reader: it is cut off, has more scans than any encoder makes, or metadata
+/// that the reader would look for beyond their segment. Empty: nothing.
+std::string jpeg_fault(std::string_view file);
 
 }  // namespace lensproof::formats

@@ -30,7 +30,6 @@ constexpr double kMostPixels = 200e6;
 constexpr double kAnyFilesNumbers = 1 << 26;  // 256 MiB of floats
 constexpr double kMostNumbersPerByte = 300.0;
 constexpr double kMib = 1 << 20;
-constexpr int kMostScans = 100;  // libjpeg writes 10
 
 constexpr std::array kRawExtensions = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw", ".sr2", ".srf",
                                        ".raf", ".orf", ".rw2", ".rwl", ".pef", ".srw", ".x3f", ".3fr", ".fff",
@@ -84,16 +83,6 @@ const char* reader_of(PictureForm form) {
     return "";
 }
 
-void check_jpeg(const fs::path& file) {
-    const std::string bytes = read_file(file);
-    if (is_cut_off(bytes)) {
-        throw InputError(fmt::format("{}: the file is cut off: a JPEG without its end", file.string()));
-    }
-    if (const int scans = scan_count(bytes); scans > kMostScans) {
-        throw InputError(fmt::format("{}: a JPEG of {} scans, expected at most {}", file.string(), scans, kMostScans));
-    }
-}
-
 /// What a tile's or a strip's rounding up makes of a side.
 double rounded_up(int side, int tile) {
     return tile > 0 ? std::ceil(static_cast<double>(side) / tile) * tile : side;
@@ -134,12 +123,10 @@ OpenPicture open_picture_here(const fs::path& file, const OIIO::ImageSpec& hints
             "{}: not a picture that can be read, expected JPEG, PNG, TIFF, EXR, HDR (Radiance) or a camera's raw file",
             file.string()));
     }
-    if (*form == PictureForm::jpeg) {
-        check_jpeg(file);
-    }
-    const std::string fault = *form == PictureForm::exr   ? exr_fault(file)
-                              : *form == PictureForm::png ? png_fault(file)
-                                                          : "";
+    const std::string fault = *form == PictureForm::exr    ? exr_fault(file)
+                              : *form == PictureForm::png  ? png_fault(file)
+                              : *form == PictureForm::jpeg ? jpeg_fault(read_file(file))
+                                                           : "";
     if (!fault.empty()) {
         throw InputError(fmt::format("{}: not a picture that can be read: {}", file.string(), fault));
     }

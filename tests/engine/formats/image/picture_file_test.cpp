@@ -11,6 +11,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/memory.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/image/image.h"
 #include "engine/formats/image/jpeg.h"
 #include "engine/formats/image/photo.h"
@@ -159,6 +160,36 @@ TEST(PictureFile, GoesOverAPictureAHundredTimesAtMost) {
 }
 
 // What a file of 122 bytes promises is not made room for, unless asked for; then it is what it takes that counts.
+// The reader takes metadata for as long as they say that they are. A block that fits is read, as are segments of
+// others; found by fuzzing, and in the corpus.
+TEST(PictureFile, HasMetadataThatEndWithTheirSegment) {
+    const TestFolder folder;
+    const std::string bytes = encode_jpeg(make_image(16, 16, {"R", "G", "B"}));
+    const auto with = [&](char marker, const std::string& content) {
+        const std::size_t size = content.size() + 2;
+        return bytes.substr(0, 2) + "\xFF" + marker + static_cast<char>(size / 256) + static_cast<char>(size % 256) +
+               content + bytes.substr(2);
+    };
+    const auto complaint = [&](const std::string& file) {
+        write_file(folder.path() / "a.jpg", file);
+        return complaint_about([&] { read_image(folder.path() / "a.jpg"); });
+    };
+    constexpr char kApp1 = '\xE1';
+    constexpr char kApp13 = '\xED';
+    const std::string head(
+        "Photoshop 3.0\0"
+        "8BIM\4\4\0\0\0\0",
+        24);
+    const std::string block("\0\x10\x1C\2\x78\0\7caption    ", 18);
+    EXPECT_EQ(complaint(with(kApp13, head + block)), "");
+    EXPECT_EQ(complaint(with(kApp13, "Ducky")), "");
+    EXPECT_EQ(complaint(with(kApp1, std::string("Exif\0\0", 6))), "");
+    EXPECT_TRUE(
+        says(complaint(with(kApp13, head + block.substr(0, 17))), "an IPTC block of 16 bytes in a segment of 41"));
+    EXPECT_TRUE(says(complaint(with(kApp13, head.substr(0, 13))), "in a segment of 13"));
+    EXPECT_TRUE(says(complaint(with(kApp1, "Exif")), "metadata that end within their name"));
+}
+
 TEST(PictureFile, PromisesNoMoreThanItsBytesCanHold) {
     const TestFolder folder;
     const auto bomb = named(folder, "bomb.tif", empty_tiff(14000, 14000, 8));
