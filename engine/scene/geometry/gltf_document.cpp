@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdint>
 #include <fstream>
+#include <utility>
 
 #include "engine/base/bytes.h"
 #include "engine/base/file.h"
@@ -72,7 +73,7 @@ Json gltf_json(const fs::path& file) {
             fmt::format("{}: is cut off: {} bytes of JSON, {} are there", file.string(), *length, text.size()));
     }
     Json json = Json::parse(text, file.string());
-    const Json& version = json["asset"]["version"];
+    const Json& version = std::as_const(json)["asset"]["version"];
     if (!version.is_text() || !version.text().starts_with("2")) {
         throw InputError(fmt::format("{}: is no glTF of version 2, of which alone meshes are read", file.string()));
     }

@@ -59,7 +59,7 @@ TEST_F(KnownDirectionsTable, OrIsOfACatalogue) {
 }
 
 TEST_F(KnownDirectionsTable, IsRefusedByFileLineAndColumn) {
-    EXPECT_TRUE(says(refused("x_px,y_px\n1,2\n"), "stars.csv:1: the columns are x_px, y_px, expected"));
+    EXPECT_TRUE(says(refused("x_px,y_px\n1,2\n"), "stars.csv:1: the header is \"x_px,y_px\", expected"));
     EXPECT_TRUE(says(refused("x_px,y_px,dx,dy,dz\n1,2,0,0,0\n"), "stars.csv:2: dx is \"0\", expected a direction"));
     EXPECT_TRUE(says(refused("x_px,y_px,dx,dy,dz\n1,nan,0,0,1\n"), "stars.csv:2: y_px is \"nan\""));
     EXPECT_TRUE(says(refused("x_px,y_px,azimuth_deg,altitude_deg\n1,2,0,91\n"), "stars.csv:2: altitude_deg is \"91\""));

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "engine/base/write_file.h"
+#include "engine/scene/geometry/mesh_material.h"
 #include "engine/scene/geometry/surface_sampler.h"
 #include "tests/complaint.h"
 #include "tests/engine/scene/scene_shapes.h"
@@ -429,6 +430,16 @@ TEST_F(MeshFileTest, TreesOfNodesAreBounded) {
     EXPECT_EQ(read_mesh(write("shared.gltf", nodes_gltf(chain(12, 2)))).mesh.triangles.size(), 4096U);
     EXPECT_TRUE(says(complaint_about([&] { read_mesh(write("nested.gltf", std::string(200'000, '['))); }),
                      "nested.gltf: more than 64 brackets"));
+}
+
+// Whatever JSON a file is, it is refused for what it is not, wherever it is looked into first.
+TEST_F(MeshFileTest, OtherJsonIsNoGltf) {
+    for (const char* text : {"3", "[]", "null", R"({"asset": 5})", R"({"asset": {"version": 2}})"}) {
+        SCOPED_TRACE(text);
+        const fs::path file = write("other.gltf", text);
+        EXPECT_TRUE(says(complaint_about([&] { read_mesh(file); }), "is no glTF of version 2"));
+        EXPECT_TRUE(says(complaint_about([&] { gltf_references(file, true); }), "is no glTF of version 2"));
+    }
 }
 
 // Cut anywhere, a file is refused by name or is a mesh that can be traced; nothing else happens. Binary forms, and
