@@ -9,6 +9,7 @@
 #include "calibration/photographed/dng_opcodes.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/formats/image/full_frame.h"
 
 namespace lensproof::calibration {
 
@@ -135,7 +136,7 @@ double crop_factor_of(const Statements& statements, const PictureSize& size) {
     if (const auto resolution = statements.of_photo("FocalPlaneXResolution")) {
         const double unit = statements.of_photo("FocalPlaneResolutionUnit").value_or(2.0);
         const double unit_mm = unit == 3.0 ? 10.0 : unit == 4.0 ? 1.0 : kInch_mm;
-        return kFullFrameDiagonal_mm / (size.diagonal() / *resolution * unit_mm);
+        return formats::kFullFrameDiagonal_mm / (size.diagonal() / *resolution * unit_mm);
     }
     const auto focal_mm = statements.of_photo("FocalLength");
     const auto full_frame_mm = statements.of_photo("FocalLengthIn35mmFilm");

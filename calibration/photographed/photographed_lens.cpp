@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/bisect.h"
+#include "engine/formats/image/full_frame.h"
 
 namespace lensproof::calibration {
 
@@ -32,7 +33,7 @@ double MeasuredVignetting::brightness(double share) const {
 }
 
 double PhotographedLens::half_diagonal_mm() const {
-    return 0.5 * kFullFrameDiagonal_mm / crop_factor;
+    return 0.5 * formats::kFullFrameDiagonal_mm / crop_factor;
 }
 
 double PhotographedLens::unit_mm() const {

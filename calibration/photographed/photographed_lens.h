@@ -12,9 +12,6 @@
 
 namespace lensproof::calibration {
 
-/// Of 36 × 24 mm.
-inline const double kFullFrameDiagonal_mm = std::hypot(36.0, 24.0);
-
 /// A radius from another: the sum of p[i] r^(i+1), both in units of PhotographedLens::unit_mm.
 using RadialPolynomial = std::array<double, 7>;
 

@@ -10,6 +10,7 @@
 #include "engine/base/file.h"
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
+#include "engine/formats/image/full_frame.h"
 #include "engine/formats/image/jpeg.h"
 
 namespace lensproof::calibration {
@@ -17,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kEquivalentDiagonal_mm = 43.266615305567875;  // of 36 × 24 mm
 constexpr double kWide_deg = 25.0;             // half the field from which on lenses without distortion are rare
 constexpr double kNoDistortion_percent = 0.1;  // what a corrected picture may have left
 constexpr double kFocalLengthMargin = 0.06;    // of cameras' own figures: rounding, and breathing at close focus
@@ -250,8 +250,8 @@ std::vector<std::string> suspicions_of(const Profile& profile) {
     }
     if (profile.source.notes && profile.source.notes->equivalent_focal_length_mm) {
         const double stated = *profile.source.notes->equivalent_focal_length_mm;
-        const double measured =
-            focal_length_px(profile.geometry->model) * kEquivalentDiagonal_mm / (2.0 * half_diagonal_px(profile));
+        const double measured = focal_length_px(profile.geometry->model) * formats::kFullFrameDiagonal_mm /
+                                (2.0 * half_diagonal_px(profile));
         if (std::abs(measured - stated) > kFocalLengthMargin * stated + 0.5) {
             signs.push_back(
                 fmt::format("the measured focal length is {:.1f} mm on 36 × 24 mm, the camera states {:g} "

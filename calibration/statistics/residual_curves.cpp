@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "calibration/statistics/student.h"
+#include "engine/base/angle.h"
 
 namespace lensproof::calibration {
 
@@ -98,7 +99,7 @@ ResidualCurves residual_curves(const std::vector<PlacedResidual>& residuals, con
         const Vec2d outwards = distance > 0.0 ? from / distance : Vec2d{1.0, 0.0};
         const double along = dot(residual.by_px, outwards);
         const double across = residual.by_px.y * outwards.x - residual.by_px.x * outwards.y;
-        const double azimuth = std::atan2(from.y, from.x) * 180.0 / std::numbers::pi;
+        const double azimuth = degrees(std::atan2(from.y, from.x));
         const double turned = azimuth < 0.0 ? azimuth + 360.0 : azimuth;
         radial.add(distance / half_diagonal_px, along);
         tangential.add(distance / half_diagonal_px, across);

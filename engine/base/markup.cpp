@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "engine/base/utf8.h"
+
 namespace lensproof {
 
 namespace {
@@ -11,43 +13,21 @@ constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmn
 
 constexpr std::string_view kReplacement = "\uFFFD";
 
-/// The length of the UTF-8 sequence at the start of `text` (not empty), or 0 where it is not one (RFC 3629) or XML
-/// forbids its character.
-std::size_t character_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) {
-        return i < text.size() ? static_cast<unsigned char>(text[i]) : static_cast<unsigned char>(0);
-    };
-    const unsigned first = byte(0);
-    if (first < 0x80) {
-        const bool is_control = first < 0x20 || first == 0x7F;
-        return !is_control || first == '\n' || first == '\t' ? 1 : 0;
-    }
-    const std::size_t length = first >= 0xF0 ? 4 : (first >= 0xE0 ? 3 : 2);
-    if (first < 0xC2 || first > 0xF4) {
-        return 0;
-    }
-    unsigned code = first & (0x7Fu >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xC0u) != 0x80u) {
-            return 0;
-        }
-        code = code << 6u | (byte(i) & 0x3Fu);
-    }
-    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-    const bool control = code < 0xA0;
-    const bool surrogate = code >= 0xD800 && code < 0xE000;
+bool is_forbidden_in_xml(char32_t code) {
+    const bool is_control = (code < 0x20 && code != '\n' && code != '\t') || (code >= 0x7F && code < 0xA0);
     const bool reorders = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
-    const bool noncharacter = (code & 0xFFFEu) == 0xFFFEu;
-    return overlong || control || surrogate || reorders || noncharacter || code > 0x10FFFF ? 0 : length;
+    const bool is_no_character = (code & 0xFFFEU) == 0xFFFE;
+    return is_control || reorders || is_no_character;
 }
 
-/// Calls `visit` with every character of `text`; what is none comes byte by byte, as U+FFFD.
+/// Calls `visit` with every character of `text`; what is none, or forbidden, comes byte by byte, as U+FFFD.
 template <class Visitor>
 void for_each_character(std::string_view text, Visitor&& visit) {
     while (!text.empty()) {
-        const std::size_t length = character_length(text);
-        visit(length > 0 ? text.substr(0, length) : kReplacement);
-        text.remove_prefix(std::max<std::size_t>(length, 1));
+        const Letter letter = first_letter(text);
+        const bool is_shown = (letter.code != kNoLetter || letter.bytes > 1) && !is_forbidden_in_xml(letter.code);
+        visit(is_shown ? text.substr(0, letter.bytes) : kReplacement);
+        text.remove_prefix(is_shown ? letter.bytes : 1);
     }
 }
 

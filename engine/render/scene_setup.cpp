@@ -49,7 +49,7 @@ void read_even_light(TomlTable& table, SceneSetup& setup) {
 }
 
 void read_render_table(TomlTable& table, SceneSetup& setup) {
-    setup.samples_per_pixel = table.integer_or("samples_per_pixel", setup.samples_per_pixel, 1, 1 << 20);
+    setup.samples_per_pixel = table.integer_or("samples_per_pixel", setup.samples_per_pixel, 1, kMostSamplesPerPixel);
     if (!setup.chart) {
         setup.max_bounces = table.integer_or("max_bounces", setup.max_bounces, 0, 10000);
         setup.diffraction.smallest_airy =

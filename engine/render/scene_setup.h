@@ -32,6 +32,8 @@ struct SceneSetup {
     DiffractionSettings diffraction;
 };
 
+inline constexpr int kMostSamplesPerPixel = 1 << 20;
+
 /// Reads a scene file, as engine/scene/README.md documents it: [camera], [[materials]], [[objects]], [[lights]],
 /// [render] and [sensor]. Illuminants and the files that it names have to be there; lens, meshes, pictures, tables,
 /// metals and glasses are looked up by whoever builds the scene. Throws InputError naming file, line and key; besides

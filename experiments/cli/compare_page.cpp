@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -103,14 +104,20 @@ findings::Picture layered(const PageSubject& a, const calibration::PictureCompar
     return picture;
 }
 
-std::string title_of(const std::string& curve) {
-    if (curve == "brightness_ev") {
-        return "Brightness, B against A";
-    }
-    if (curve == "red_over_green_ev") {
-        return "Red over green, B against A";
-    }
-    return curve == "blue_over_green_ev" ? "Blue over green, B against A" : "CIEDE2000";
+/// What a page says of a curve of radial_difference.h.
+struct CurveWords {
+    std::string curve;
+    std::string title;
+    std::string unit;
+};
+
+CurveWords words_of(const std::string& curve) {
+    static const std::array kWords = {CurveWords{"brightness_ev", "Brightness, B against A", "EV"},
+                                      CurveWords{"red_over_green_ev", "Red over green, B against A", "EV"},
+                                      CurveWords{"blue_over_green_ev", "Blue over green, B against A", "EV"},
+                                      CurveWords{"ciede2000", "CIEDE2000", ""}};
+    const auto* const found = std::ranges::find(kWords, curve, &CurveWords::curve);
+    return found != kWords.end() ? *found : CurveWords{curve, curve, ""};
 }
 
 std::vector<findings::Plot> plots(const calibration::PictureComparison& found) {
@@ -118,12 +125,13 @@ std::vector<findings::Plot> plots(const calibration::PictureComparison& found) {
     for (const auto& [name, curve] : found.curves) {
         calibration::Curve whole = curve;
         whole.covered_image_height = whole.image_height.empty() ? 0.0 : whole.image_height.back();
+        const CurveWords words = words_of(name);
         plots.push_back(
             {.id = name,
-             .title = title_of(name),
+             .title = words.title,
              .subtitle = "over the distance from the frame's middle",
              .y_label = "difference",
-             .y_unit = name.ends_with("_ev") ? "EV" : "",
+             .y_unit = words.unit,
              .series = {{.label = "B against A", .subject = kSubject, .style = "difference", .curve = whole}}});
     }
     return plots;

@@ -11,6 +11,7 @@
 #include "calibration/profile/profile.h"
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
+#include "engine/formats/image/full_frame.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/terminal.h"
 
@@ -19,8 +20,6 @@ namespace lensproof::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kFullFrameDiagonal_mm = 43.266615305567875;  // 36 mm × 24 mm
 
 struct ExportOptions {
     CommonOptions common;
@@ -55,7 +54,8 @@ double crop_factor(const ExportOptions& options, const calibration::Profile& pro
         return *notes->crop_factor();
     }
     if (profile.pixel_pitch_um) {
-        return kFullFrameDiagonal_mm / (2.0 * calibration::half_diagonal_px(profile) * *profile.pixel_pitch_um * 1e-3);
+        return formats::kFullFrameDiagonal_mm /
+               (2.0 * calibration::half_diagonal_px(profile) * *profile.pixel_pitch_um * 1e-3);
     }
     throw InputError(fmt::format(
         "{}: the profile knows no pixel pitch, so the camera's crop factor is unknown: expected --crop-factor",

@@ -9,6 +9,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "engine/render/metering.h"
+#include "engine/render/scene_setup.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/terminal.h"
@@ -154,7 +155,7 @@ void add_tradeoff_command(Program& program) {
         .check(in_range(64, 100'000'000))
         .shows_default();
     command.add_option("--samples,--spp", settings.samples, "Samples of a pixel and a seed")
-        .check(in_range(1, 1 << 20))
+        .check(in_range(1, render::kMostSamplesPerPixel))
         .shows_default();
     command.add_option("--seeds", settings.seeds, "Pictures of each model, which tell its noise from its error")
         .check(in_range(2, 1000))

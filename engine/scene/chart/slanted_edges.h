@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/base/kinds.h"
 #include "engine/scene/chart/chart_traits.h"
 #include "engine/scene/chart/outline.h"
@@ -24,7 +25,7 @@ void visit_keys(SlantedEdges& edges, auto& keys) {
     keys.grid("squares", edges.columns, edges.rows, {.least = 1, .printed = {7, 5}});
     keys.pitch("pitch_mm", edges.pitch_mm, {edges.columns, edges.rows});
     keys.angle("angle_deg", edges.angle_deg, 45.0);
-    const double angle = std::abs(edges.angle_deg) * std::numbers::pi / 180.0;
+    const double angle = radians(std::abs(edges.angle_deg));
     keys.part("square_mm", edges.square_mm,
               {.of = "what of pitch_mm a turned square may have",
                .most_mm = edges.pitch_mm / (std::cos(angle) + std::sin(angle)),
@@ -33,7 +34,7 @@ void visit_keys(SlantedEdges& edges, auto& keys) {
 
 inline bool is_black(const SlantedEdges& edges, double x_mm, double y_mm) {
     const Cell cell = cell_at({edges.columns, edges.rows}, edges.pitch_mm, x_mm, y_mm);
-    const double angle = edges.angle_deg * std::numbers::pi / 180.0;
+    const double angle = radians(edges.angle_deg);
     const double c = std::cos(angle) * edges.pitch_mm;
     const double s = std::sin(angle) * edges.pitch_mm;
     return cell.is_on_grid && is_in_square(c * cell.x + s * cell.y, c * cell.y - s * cell.x, edges.square_mm);
@@ -52,7 +53,7 @@ inline ChartTraits traits(const SlantedEdges& edges) {
 
 inline Outline outline(const SlantedEdges& edges) {
     Outline outline;
-    const double angle = edges.angle_deg * std::numbers::pi / 180.0;
+    const double angle = radians(edges.angle_deg);
     for (const Vec2d& centre : cell_middles({edges.columns, edges.rows}, edges.pitch_mm)) {
         outline.push_back(rectangle(centre, {std::cos(angle), std::sin(angle)}, edges.square_mm, edges.square_mm));
     }

@@ -5,9 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <tuple>
 #include <utility>
+
+#include "engine/base/angle.h"
 
 namespace lensproof::scene {
 
@@ -63,7 +64,7 @@ std::vector<PlacedCorner> by_place(const TriangleMesh& mesh, const std::vector<C
 std::vector<Vec3<float>> corner_normals(const TriangleMesh& mesh, const std::vector<Corner>& corners,
                                         double crease_deg) {
     constexpr std::size_t kMostThatMeet = 1000;
-    const double least_cosine = std::cos(crease_deg * std::numbers::pi / 180.0);
+    const double least_cosine = std::cos(radians(crease_deg));
     const std::vector<PlacedCorner> order = by_place(mesh, corners);
     std::vector<Vec3<float>> normals(corners.size());
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {

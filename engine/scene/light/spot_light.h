@@ -1,10 +1,10 @@
 // engine/scene/light/spot_light.h — a cone of light from a point.
 #pragma once
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "engine/base/affine.h"
+#include "engine/base/angle.h"
 #include "engine/base/basis.h"
 #include "engine/base/kinds.h"
 #include "engine/base/toml_keys.h"
@@ -69,8 +69,8 @@ inline void read_keys(SpotLightDescription& spot, TomlTable& table, const NameIn
 inline SpotLight make_light(const SpotLightDescription& spot, const LightMaker& maker) {
     return {.position = spot.position_mm,
             .axis = spot.direction,
-            .cos_inner = std::cos(spot.full_deg * std::numbers::pi / 180.0),
-            .cos_outer = std::cos(spot.cone_deg * std::numbers::pi / 180.0),
+            .cos_inner = std::cos(radians(spot.full_deg)),
+            .cos_outer = std::cos(radians(spot.cone_deg)),
             .intensity = maker.intensity(spot.illuminant, spot.intensity_cd)};
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "engine/base/angle.h"
 #include "engine/base/basis.h"
 #include "engine/base/kinds.h"
 #include "engine/base/toml_keys.h"
@@ -50,7 +51,7 @@ inline void read_keys(SunLightDescription& sun, TomlTable& table, const NameInde
 
 /// An even disc of angular radius r gives a plane that faces it the irradiance L π sin²r.
 inline SunLight make_light(const SunLightDescription& sun, const LightMaker& maker) {
-    const double radius = 0.5 * sun.angular_diameter_deg * std::numbers::pi / 180.0;
+    const double radius = radians(0.5 * sun.angular_diameter_deg);
     const double per_projected = 1.0 / (std::numbers::pi * std::sin(radius) * std::sin(radius));
     const spectral::Spectrum irradiance =
         spectral::irradiance_of(spectral::illuminant(sun.illuminant), sun.illuminance_lx);

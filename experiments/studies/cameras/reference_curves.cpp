@@ -14,6 +14,7 @@
 #include "engine/base/file.h"
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
+#include "engine/formats/image/full_frame.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/paraxial.h"
@@ -178,7 +179,7 @@ calibration::Profile reference_curves(const ReferenceSource& source, const calib
             kind == "dng:" ? calibration::read_dng_corrections(source.file)
                            : calibration::LensfunDatabase::of_system().find(
                                  {.model = source.stated.substr(kind.size()),
-                                  .sensor_crop_factor = 0.5 * calibration::kFullFrameDiagonal_mm / half_diagonal,
+                                  .sensor_crop_factor = 0.5 * formats::kFullFrameDiagonal_mm / half_diagonal,
                                   .focal_length_mm = focal_mm});
         add_photographed(lens, half_diagonal, pitch_mm, f_number, profile);
     }

@@ -17,6 +17,7 @@
 #include "engine/render/integrators/chart_tracer.h"
 #include "engine/render/integrators/integrators.h"
 #include "engine/render/progressive.h"
+#include "engine/render/scene_setup.h"
 #include "engine/scene/chart/chart_file.h"
 #include "engine/spectral/wavelengths.h"
 #include "experiments/findings/shown_picture.h"
@@ -42,8 +43,8 @@ Simulation read_simulation(TomlTable& table, findings::ExperimentFile& file) {
     simulation.parts = read_parts(table);
     simulation.references = read_references(table);
     simulation.flat_field = table.boolean_or("flat_field", simulation.parts.vignetting);
-    simulation.flat_field_samples_per_pixel =
-        table.integer_or("flat_field_samples_per_pixel", simulation.flat_field_samples_per_pixel, 1, 1 << 20);
+    simulation.flat_field_samples_per_pixel = table.integer_or(
+        "flat_field_samples_per_pixel", simulation.flat_field_samples_per_pixel, 1, render::kMostSamplesPerPixel);
     TomlTable camera = table.table("camera");
     simulation.scene.camera = render::read_camera_settings(camera);
     try {

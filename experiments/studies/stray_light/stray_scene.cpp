@@ -11,6 +11,7 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/render/integrators/passes.h"
 #include "engine/render/metering.h"
+#include "engine/render/scene_setup.h"
 #include "engine/scene/scene_build.h"
 
 namespace lensproof::studies {
@@ -161,8 +162,9 @@ StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
             render::PixelFilter::named(table.choice("stray_filter", render::PixelFilter::known_names()));
     }
     scene.samples_per_pixel =
-        by_pass(table, "samples_per_pixel", scene.passes,
-                [](TomlTable& numbers, const std::string& pass) { return numbers.integer(pass, 1, 1 << 20); });
+        by_pass(table, "samples_per_pixel", scene.passes, [](TomlTable& numbers, const std::string& pass) {
+            return numbers.integer(pass, 1, render::kMostSamplesPerPixel);
+        });
     scene.brightening_ev = by_pass(table, "brightening_ev", scene.passes,
                                    [](TomlTable& numbers, const std::string& pass) { return numbers.number(pass); });
     std::vector<findings::Varied> variants = findings::varied_tables(table, "variants");
@@ -187,7 +189,7 @@ StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
     if (scene.has_streaks) {
         expect_streaks(table, scene);
     }
-    scene.growth_samples = table.integer_or("growth_samples", 0, 8, 1 << 20);
+    scene.growth_samples = table.integer_or("growth_samples", 0, 8, render::kMostSamplesPerPixel);
     scene.noise_percent = table.optional_number("noise_percent", kPositive);
     if (std::optional<TomlTable> chart = table.optional_table("chart")) {
         scene.chart = read_measured_chart(*std::move(chart), variant_names(scene));

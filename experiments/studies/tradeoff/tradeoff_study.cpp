@@ -7,6 +7,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/render/scene_setup.h"
 #include "experiments/studies/tradeoff/scene_case.h"
 #include "experiments/studies/tradeoff/tradeoff_findings.h"
 
@@ -39,7 +40,7 @@ std::vector<TradeoffScene> read_scenes(TomlTable& table, findings::ExperimentFil
     common.rungs = rungs_named(findings::names_of(table, "rungs", rung_names()));
     TradeoffSettings& settings = common.settings;
     settings.pixels = table.integer_or("pixels", settings.pixels, 64, 100'000'000);
-    settings.samples = table.integer_or("samples_per_pixel", settings.samples, 1, 1 << 20);
+    settings.samples = table.integer_or("samples_per_pixel", settings.samples, 1, render::kMostSamplesPerPixel);
     settings.seeds = table.integer_or("seeds", settings.seeds, 2, 1000);
     settings.noise = table.number_or("noise", settings.noise, kPositive);
     common.stated_tolerance = table.text_or("tolerance", kVisibleError);

@@ -12,6 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
+#include "engine/render/scene_setup.h"
 #include "engine/spectral/sensor_response.h"
 #include "experiments/studies/twins/render_twin.h"
 
@@ -42,7 +43,8 @@ TwinSettings read_twins_table(TomlTable& table, findings::ExperimentFile& file) 
     twins.focus_distance_mm = table.optional_number("focus_distance_mm", kPositive);
     twins.free = findings::names_of(table, "fit", {calibration::kFreeKinds.begin(), calibration::kFreeKinds.end()});
     twins.response = table.has("response") ? table.choice("response", spectral::known_sensors()) : "camera";
-    twins.samples_per_pixel = table.integer_or("samples_per_pixel", twins.samples_per_pixel, 1, 1 << 20);
+    twins.samples_per_pixel =
+        table.integer_or("samples_per_pixel", twins.samples_per_pixel, 1, render::kMostSamplesPerPixel);
     twins.stated = {{"lens", twins.lens},
                     {"f_number", twins.f_number ? Json(*twins.f_number) : Json()},
                     {"focus_distance_mm", twins.focus_distance_mm ? Json(*twins.focus_distance_mm) : Json()},

@@ -1,4 +1,6 @@
 // What is wrong with a prescription is said with file, line and key.
+#include "engine/formats/prescription/prescription_file.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -6,12 +8,11 @@
 #include "engine/base/toml.h"
 #include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
-#include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/lens.h"
 #include "tests/complaint.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::formats::prescription_test {
+namespace lensproof::formats::prescription_file_test {
 
 class PrescriptionFile : public testing::Test {
   protected:
@@ -107,16 +108,6 @@ TEST_F(PrescriptionFile, CsvCarriesTheSameLens) {
     EXPECT_TRUE(says(said, "bad.csv:2: radius_mm is \"5O\""));
 }
 
-TEST(Projections, AgreeNearTheAxisAndHoldBeyondNinetyDegrees) {
-    for (const optics::Projection projection :
-         {optics::Projection::rectilinear, optics::Projection::equidistant, optics::Projection::equisolid,
-          optics::Projection::stereographic, optics::Projection::orthographic}) {
-        EXPECT_NEAR(optics::projected_radius(projection, 1e-4), 1e-4, 1e-12) << optics::projection_name(projection);
-    }
-    EXPECT_DOUBLE_EQ(optics::projected_radius(optics::Projection::equidistant, 2.0), 2.0);
-    EXPECT_DOUBLE_EQ(optics::projected_radius(optics::Projection::equisolid, 2.0), 2.0 * std::sin(1.0));
-}
-
 /// A file's own folder comes first, then the working folder, as on the command line.
 TEST(LensName, IsRelativeToTheFileThatStatesIt) {
     const TestFolder folder;
@@ -130,4 +121,4 @@ TEST(LensName, IsRelativeToTheFileThatStatesIt) {
     EXPECT_EQ(named("lens.toml"), (folder.path() / "lens.toml").string());
 }
 
-}  // namespace lensproof::formats::prescription_test
+}  // namespace lensproof::formats::prescription_file_test

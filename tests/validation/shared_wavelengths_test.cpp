@@ -7,7 +7,7 @@
 
 #include "engine/render/camera/camera.h"
 
-namespace lensproof::shared_rays_test {
+namespace lensproof::shared_wavelengths_test {
 
 /// Film irradiance in an even world of radiance 1, a wavelength each, with standard errors; and which fraction of
 /// the paths' other wavelengths counted.
@@ -87,4 +87,4 @@ TEST(SharedRays, CountEachWavelengthAsItsOwnPathsDo) {
     }
 }
 
-}  // namespace lensproof::shared_rays_test
+}  // namespace lensproof::shared_wavelengths_test

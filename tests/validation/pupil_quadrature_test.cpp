@@ -1,6 +1,4 @@
 // Pupil maps against the whole rear element and against quadrature: no light lost, and hardly a path.
-#include "engine/pupil/pupil_map.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,11 +16,12 @@
 #include "engine/optics/illumination.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/packet/trace_batch.h"
+#include "engine/pupil/pupil_map.h"
 #include "engine/render/sampling/sampler.h"
 #include "tests/test_folder.h"
 #include "tests/validation/measured.h"
 
-namespace lensproof::pupil_map_test {
+namespace lensproof::pupil_quadrature_test {
 
 constexpr int kRings = 8;
 constexpr int kWavelengths = 16;  // the centres of as many strata from 400 to 700 nm
@@ -365,4 +364,4 @@ TEST(PupilMap, AgreesWithQuadrature) {
     }
 }
 
-}  // namespace lensproof::pupil_map_test
+}  // namespace lensproof::pupil_quadrature_test

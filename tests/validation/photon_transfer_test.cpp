@@ -1,7 +1,6 @@
-// tests/validation/raw_sensor_test.cpp — a sensor's noise, as one measures a camera's: flat fields, their means and
-// variances, their histograms. Seeds are fixed; the limits are those that one run in a million would pass by chance.
-#include "engine/render/raw/raw_sensor.h"
-
+// tests/validation/photon_transfer_test.cpp — a sensor's noise, as one measures a camera's: flat fields, their means
+// and variances, their histograms. Seeds are fixed; the limits are those that one run in a million would pass by
+// chance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +12,9 @@
 #include <numeric>
 #include <vector>
 
-namespace lensproof::raw_sensor_test {
+#include "engine/render/raw/raw_sensor.h"
+
+namespace lensproof::photon_transfer_test {
 
 constexpr int kSide = 400;
 constexpr double kCount = kSide * kSide;
@@ -200,4 +201,4 @@ TEST(RawSensor, NoiseOfPixelsAndOfSeedsIsIndependent) {
     }
 }
 
-}  // namespace lensproof::raw_sensor_test
+}  // namespace lensproof::photon_transfer_test
