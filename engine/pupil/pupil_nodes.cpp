@@ -20,8 +20,8 @@ constexpr std::size_t kMostPositions = 9;
 // A step of the radius below the first counts for little; below the second it is not halved any more.
 constexpr double kSmallStep = 1.0 / 64.0;
 constexpr double kSmallestStep = 1.0 / 4096.0;
-// Kinks take some twenty more than at first, of all lenses that ship at most (westrogon-24). A lens that wants all of
-// its steps halved gains little by it, and its regions hold what passes all the same: nodes are at most 9 · 16 · 129.
+// Of all lenses that ship kinks take twenty more than at first at most (westrogon-24). A lens that wants all of its
+// steps halved is given up here, its regions larger than they need be; nodes are at most 9 · 16 · 129.
 constexpr std::size_t kMostFractions = 8 * kFirstFractions + 1;
 // Between two nodes the middle alone is looked at, where a smooth region is missed by the most; the rest is for kinks,
 // where another rim takes over.

@@ -254,7 +254,7 @@ class OutlineFinder {
     /// The distance at which a ray has left the disc.
     [[nodiscard]] double limit(const PupilFrame& frame, const EdgeRay& ray, double from) const {
         double distance = from;
-        constexpr double kFar = 1e12;  // forty doublings or so
+        constexpr double kFar = 1e12;  // seventy doublings from a nanometre
         while (distance < kFar) {
             const Vec2d at = frame.from_own(ray.at(distance));
             if (dot(at, at) > search_.radius * search_.radius) {

@@ -26,20 +26,20 @@ auto in_line(const T& value) {
 }
 
 template <class... Values>
-std::string formatted(std::string_view format, const Values&... values) {
+std::string formatted(fmt::string_view format, const Values&... values) {
     return fmt::vformat(format, fmt::make_format_args(values...));
 }
 
 /// The same of a format and what goes into it, each `in_line`, to standard output: what a command found.
 template <class... Args>
 void print(fmt::format_string<const Args&...> format, const Args&... args) {
-    show(formatted({fmt::string_view(format).data(), fmt::string_view(format).size()}, in_line(args)...));
+    show(formatted(format, in_line(args)...));
 }
 
 /// To standard error: what there is to know of it.
 template <class... Args>
 void print_message(fmt::format_string<const Args&...> format, const Args&... args) {
-    show_message(formatted({fmt::string_view(format).data(), fmt::string_view(format).size()}, in_line(args)...));
+    show_message(formatted(format, in_line(args)...));
 }
 
 }  // namespace lensproof::cli

@@ -141,29 +141,19 @@ std::optional<int> jpeg_quality(std::string_view file) {
     return best;
 }
 
-int scan_count(std::string_view file) {
-    int scans = 0;
-    for_each_segment(file, [&](int marker, std::string_view) {
-        scans += marker == kScan ? 1 : 0;
-        return true;
-    });
-    return scans;
-}
-
 std::string jpeg_fault(std::string_view file) {
     constexpr int kMostScans = 100;  // libjpeg writes 10
     if (is_cut_off(file)) {
         return "the file is cut off: a JPEG without its end";
     }
-    if (const int scans = scan_count(file); scans > kMostScans) {
-        return fmt::format("a JPEG of {} scans, expected at most {}", scans, kMostScans);
-    }
+    int scans = 0;
     std::string fault;
     for_each_segment(file, [&](int marker, std::string_view content) {
+        scans += marker == kScan ? 1 : 0;
         fault = metadata_fault(marker, content);
         return fault.empty();
     });
-    return fault;
+    return scans <= kMostScans ? fault : fmt::format("a JPEG of {} scans, expected at most {}", scans, kMostScans);
 }
 
 Image after_jpeg(const Image& image, int quality) {

@@ -1,4 +1,4 @@
-// engine/formats/image/jpeg.h — what JPEG does to a picture.
+// engine/formats/image/jpeg.h — what JPEG does to a picture, and what its files must not say.
 #pragma once
 #include <optional>
 #include <string>
@@ -18,12 +18,9 @@ Image after_jpeg(const Image& image, int quality);
 /// without that table.
 std::optional<int> jpeg_quality(std::string_view file);
 
-/// How often the picture is gone over (SOS): once, or about ten times where it is progressive. Each takes a reader as
-/// long as the whole picture, however few bytes it has.
-int scan_count(std::string_view file);
-
-/// What keeps a JPEG of these bytes from its reader: it is cut off, has more scans than any encoder makes, or metadata
-/// that the reader would look for beyond their segment. Empty: nothing.
+/// What keeps a JPEG of these bytes from its reader: it is cut off; it goes over the picture (SOS) more often than any
+/// encoder does, once or, where it is progressive, about ten times, of which each takes a reader as long as the whole
+/// picture, however few bytes it has; or metadata that the reader would look for beyond their segment. Empty: nothing.
 std::string jpeg_fault(std::string_view file);
 
 }  // namespace lensproof::formats

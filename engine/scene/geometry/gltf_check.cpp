@@ -116,13 +116,10 @@ void check_gltf(const std::filesystem::path& file) {
     const Json top = gltf_json(file);
     NodeTree(top, file.string()).check();
     for (const Json& buffer : top["buffers"]) {
-        if (!buffer["uri"].is_text()) {
-            continue;
-        }
-        const std::string& uri = buffer["uri"].text();
         // Assimp looks for what follows this mark also where nothing does.
-        if (uri.find("://") != std::string::npos) {
-            throw InputError(fmt::format("{}: names {}, expected a file beside it", file.string(), printable(uri)));
+        if (const Json& uri = buffer["uri"]; uri.is_text() && uri.text().find("://") != std::string::npos) {
+            throw InputError(
+                fmt::format("{}: names {}, expected a file beside it", file.string(), printable(uri.text())));
         }
     }
 }

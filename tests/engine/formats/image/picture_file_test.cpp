@@ -150,11 +150,9 @@ TEST(PictureFile, CutOffIsRefused) {
 TEST(PictureFile, GoesOverAPictureAHundredTimesAtMost) {
     const TestFolder folder;
     std::string bytes = bytes_of_form(folder, ".jpg");
-    EXPECT_EQ(scan_count(bytes), 1);
     for (int i = 0; i < 200; ++i) {
         bytes.insert(bytes.size() - 2, std::string("\xFF\xDA\0\2", 4));
     }
-    EXPECT_EQ(scan_count(bytes), 201);
     const auto file = named(folder, "a.jpg", bytes);
     EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "a JPEG of 201 scans, expected at most 100"));
 }
