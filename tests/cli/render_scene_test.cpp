@@ -188,6 +188,9 @@ TEST(RenderScene, KnowsTheFilesThatASceneNames) {
     place.file("m.obj", "v 0 0 1500\nv 91 0 1500\nv 0 90 1500\nf 1 2 3\n");
     const Outcome other = place.run({"render", "scene.toml", "--checkpoint", "c", "--spp", "64", "-o", "a.exr"});
     EXPECT_EQ(other.status, 2) << other.err;
+    place.file("m.obj", "f 1 2 3\n");
+    const Outcome damaged = place.run({"render", "scene.toml", "-o", "b.exr"});
+    EXPECT_TRUE(damaged.err.starts_with("lensproof: scene.toml: m.obj")) << damaged.err;
 }
 
 }  // namespace lensproof::render_scene_test
