@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calibration/comparison/colour_planes.h"
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 
@@ -80,20 +80,21 @@ DenoisedDifference denoised_difference(const formats::Image& a, const formats::I
     std::array<double, kTones> noise = noise_by_tone(map, tones, limits, overlap);
     cv::Mat means;
     cv::GaussianBlur(matrix_of(map), means, {0, 0}, kWindow_px, kWindow_px, cv::BORDER_REFLECT);
-    const double share = 1.0 / (4.0 * std::numbers::pi * kWindow_px * kWindow_px);
+    const double variance_left = 1.0 / (4.0 * std::numbers::pi * kWindow_px * kWindow_px);
     double quiet = 0.0;
     double common = 0.0;
     for (std::size_t i = 0; i < map.pixels.size(); ++i) {
         const auto mean = static_cast<double>(means.ptr<float>()[i]);
         const double sigma = noise[tone_of(limits, tones.pixels[i])];
-        const double left = mean == 0.0 ? 0.0 : 1.0 - kThreshold * kThreshold * sigma * sigma * share / (mean * mean);
+        const double left =
+            mean == 0.0 ? 0.0 : 1.0 - kThreshold * kThreshold * sigma * sigma * variance_left / (mean * mean);
         map.pixels[i] = overlap[i] == 0 ? 0.0F : static_cast<float>(mean * std::max(0.0, left));
         common += overlap[i] == 0 ? 0.0 : 1.0;
         quiet += overlap[i] != 0 && left <= 0.0 ? 1.0 : 0.0;
     }
     std::vector<double> all(noise.begin(), noise.end());
     result.noise = median(all);
-    result.noise_share = common > 0.0 ? quiet / common : 0.0;
+    result.noise_fraction = common > 0.0 ? quiet / common : 0.0;
     return result;
 }
 

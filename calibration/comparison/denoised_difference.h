@@ -7,9 +7,9 @@ namespace lensproof::calibration {
 
 /// The difference of two pictures' luminances, b − a in linear light, with its noise taken out.
 struct DenoisedDifference {
-    formats::Image map;        // one channel; 0 where there is no more than noise, and where nothing is in common
-    double noise = 0.0;        // standard deviation of the difference's noise, a pixel's, the median over tones
-    double noise_share = 0.0;  // share of the pixels in which no more than noise was seen
+    formats::Image map;           // one channel; 0 where there is no more than noise, and where nothing is in common
+    double noise = 0.0;           // standard deviation of the difference's noise, a pixel's, the median over tones
+    double noise_fraction = 0.0;  // fraction of the pixels in which no more than noise was seen
 };
 
 /// The noise is that of the difference itself, in which a scene that both show alike is gone: in each of 16 classes of

@@ -10,7 +10,7 @@
 
 #include "calibration/comparison/colour_planes.h"
 #include "calibration/comparison/stripes.h"
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 #include "engine/spectral/colour_matching.h"
 
 namespace lensproof::calibration {
@@ -61,7 +61,7 @@ struct Viewing {
     cv::Mat black_white;
     cv::Mat red_green;
     std::array<cv::Mat, 2> blue_yellow;
-    std::array<double, 2> blue_yellow_share{};
+    std::array<double, 2> blue_yellow_weight{};
     cv::Mat smooth;  // of the detectors of edges and points, across them
     cv::Mat edge;
     cv::Mat point;
@@ -82,11 +82,11 @@ Viewing viewing(double pixels_per_degree) {
         result.blue_yellow[i] = sensitivity(b);
         // The unnormalised Gaussian's sum over the plane is one over the normalised one's middle, squared.
         const double middle = result.blue_yellow[i].at<double>(radius);
-        result.blue_yellow_share[i] = a * std::sqrt(pi / b) / (middle * middle);
+        result.blue_yellow_weight[i] = a * std::sqrt(pi / b) / (middle * middle);
     }
-    const double whole = result.blue_yellow_share[0] + result.blue_yellow_share[1];
-    result.blue_yellow_share[0] /= whole;
-    result.blue_yellow_share[1] /= whole;
+    const double whole = result.blue_yellow_weight[0] + result.blue_yellow_weight[1];
+    result.blue_yellow_weight[0] /= whole;
+    result.blue_yellow_weight[1] /= whole;
 
     const double sigma = 0.5 * kEdgeWidth_deg * pixels_per_degree;
     const int feature_radius = static_cast<int>(std::ceil(3.0 * sigma));
@@ -189,8 +189,8 @@ Seen seen(const formats::Image& image, const Stripe& stripe, const Viewing& view
                 .points = strength_of(relative, view.point, view.smooth)};
     result.colour[0] = filtered(planes[0], view.black_white, view.black_white);
     result.colour[1] = filtered(planes[1], view.red_green, view.red_green);
-    result.colour[2] = view.blue_yellow_share[0] * filtered(planes[2], view.blue_yellow[0], view.blue_yellow[0]) +
-                       view.blue_yellow_share[1] * filtered(planes[2], view.blue_yellow[1], view.blue_yellow[1]);
+    result.colour[2] = view.blue_yellow_weight[0] * filtered(planes[2], view.blue_yellow[0], view.blue_yellow[0]) +
+                       view.blue_yellow_weight[1] * filtered(planes[2], view.blue_yellow[1], view.blue_yellow[1]);
     return result;
 }
 

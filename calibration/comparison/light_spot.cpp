@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 
-#include "calibration/statistics/order_statistics.h"
 #include "engine/base/angle.h"
 #include "engine/base/input_error.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 
@@ -253,7 +253,7 @@ LightSpot measure_spot(const formats::Image& image, const PixelRectangle& box, d
             }
         }
     }
-    spot.clipped_share = lit == 0 ? 0.0 : static_cast<double>(clipped) / lit;
+    spot.clipped_fraction = lit == 0 ? 0.0 : static_cast<double>(clipped) / lit;
     return spot;
 }
 

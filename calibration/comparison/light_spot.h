@@ -15,11 +15,11 @@ namespace lensproof::calibration {
 struct LightSpot {
     Estimate x_px;  // of its centroid
     Estimate y_px;
-    Estimate diameter_px;         // of the even ellipse as wide: the geometric mean of its axes
-    Estimate elongation;          // the longer axis over the shorter
-    Estimate angle_deg;           // of the longer, from +x towards +y, in (-90, 90]
-    std::vector<Estimate> light;  // of each channel, the sum over its pixels
-    double clipped_share = 0.0;   // of its pixels, those at `clipped_from` and above
+    Estimate diameter_px;           // of the even ellipse as wide: the geometric mean of its axes
+    Estimate elongation;            // the longer axis over the shorter
+    Estimate angle_deg;             // of the longer, from +x towards +y, in (-90, 90]
+    std::vector<Estimate> light;    // of each channel, the sum over its pixels
+    double clipped_fraction = 0.0;  // of its pixels, those at `clipped_from` and above
 
     /// log2 of one channel's light over another's.
     [[nodiscard]] Estimate colour_ev(int channel, int over) const;

@@ -9,7 +9,7 @@
 #include "calibration/comparison/noise_ratio.h"
 #include "calibration/comparison/radial_difference.h"
 #include "calibration/comparison/structural_similarity.h"
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 
@@ -27,7 +27,7 @@ void fill_uncovered(const formats::Image& a, formats::Image& b, const Overlap& o
 }
 
 /// The value that 99 of 100 pixels in common do not exceed, and the standard error of where the cut lies: between the
-/// quantiles one standard error of a share away, the share's error that of pixels over blocks.
+/// quantiles one standard error of a fraction away, the fraction's error that of pixels over blocks.
 Estimate percentile_99(const formats::Image& map, const Overlap& overlap) {
     std::vector<float> values;
     for (std::size_t i = 0; i < overlap.size(); ++i) {
@@ -38,15 +38,17 @@ Estimate percentile_99(const formats::Image& map, const Overlap& overlap) {
     if (values.empty()) {
         return {};
     }
-    constexpr double kShare = 0.99;
-    const auto cut = quantile(values, kShare);
+    constexpr double kFraction = 0.99;
+    const auto cut = quantile(values, kFraction);
     formats::Image above = formats::make_image(map.width, map.height, {"above"});
     for (std::size_t i = 0; i < above.pixels.size(); ++i) {
         above.pixels[i] = map.pixels[i] > cut ? 1.0F : 0.0F;
     }
     const double error = mean_over(above, overlap).standard_error;
-    const auto at = [&](double share) { return static_cast<double>(quantile(values, std::clamp(share, 0.0, 1.0))); };
-    return {.value = static_cast<double>(cut), .standard_error = 0.5 * (at(kShare + error) - at(kShare - error))};
+    const auto at = [&](double fraction) {
+        return static_cast<double>(quantile(values, std::clamp(fraction, 0.0, 1.0)));
+    };
+    return {.value = static_cast<double>(cut), .standard_error = 0.5 * (at(kFraction + error) - at(kFraction - error))};
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ struct FittedLevel {
     std::vector<WarpTile> tiles;
 };
 
-double share_of(const std::vector<WarpTile>& tiles, const formats::Image& image) {
+double overlap_of(const std::vector<WarpTile>& tiles, const formats::Image& image) {
     double pixels = 0.0;
     for (const WarpTile& tile : tiles) {
         pixels += tile.pixels;
@@ -46,7 +46,7 @@ FittedLevel fitted(const WarpLevel& level, const Warp& start, WarpModel model, i
     for (int i = 0; i < kMostSteps; ++i) {
         result.tiles = warp_tiles(pair, result.warp, threads);
         result.step = warp_step(result.tiles, model);
-        result.is_determined = result.step.is_determined && share_of(result.tiles, level.a) >= kLeastOverlap;
+        result.is_determined = result.step.is_determined && overlap_of(result.tiles, level.a) >= kLeastOverlap;
         if (!result.is_determined || model == WarpModel::none) {
             break;
         }
@@ -186,12 +186,12 @@ Registration register_pictures(const formats::Image& a, const formats::Image& b,
                              }) -
         levels.begin());
     const bool turns = !wanted || *wanted > WarpModel::translation;
-    const WarpModel way = turns ? WarpModel::similarity : WarpModel::translation;
+    const WarpModel coarse_model = turns ? WarpModel::similarity : WarpModel::translation;
     const WarpStarts starts = warp_starts(levels, turns, threads);
     FittedLevel coarse;
     result.correlation = -1.0;
     for (const Warp& start : starts.warps) {
-        const FittedLevel from_there = best_at(levels[starts.level], start, way, threads);
+        const FittedLevel from_there = best_at(levels[starts.level], start, coarse_model, threads);
         const double correlation = detail_correlation(levels[starts.level], from_there.warp, threads);
         if (correlation > result.correlation) {
             result.correlation = correlation;
@@ -199,7 +199,7 @@ Registration register_pictures(const formats::Image& a, const formats::Image& b,
         }
     }
     for (std::size_t i = starts.level; i-- > choosing;) {
-        coarse = best_at(levels[i], coarse.warp, way, threads);
+        coarse = best_at(levels[i], coarse.warp, coarse_model, threads);
         result.correlation = std::max(result.correlation, detail_correlation(levels[i], coarse.warp, threads));
     }
     if (result.correlation < kLeastCorrelation || !coarse.is_determined) {
@@ -236,7 +236,7 @@ Registration register_pictures(const formats::Image& a, const formats::Image& b,
     result.warp = fit.warp;
     result.parameters = parameters_of(fit, choice.model, frame);
     result.residual_px = rms_shift_px(tile_shifts(fit.tiles, fit.step.contrast, frame));
-    result.overlap = result.model == WarpModel::none ? 1.0 : share_of(fit.tiles, levels[0].a);
+    result.overlap = result.model == WarpModel::none ? 1.0 : overlap_of(fit.tiles, levels[0].a);
     return result;
 }
 

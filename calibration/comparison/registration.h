@@ -27,7 +27,7 @@ struct Registration {
     double residual_px = std::nan("");
     Likeness likeness = Likeness::untold;
     double correlation = 0.0;  // of the pictures' detail, at the resolution where it is largest
-    double overlap = 1.0;      // share of the frame
+    double overlap = 1.0;      // fraction of the frame
     std::string reason;        // of the model, in words
 };
 

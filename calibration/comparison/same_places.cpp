@@ -24,7 +24,7 @@ struct LocalWarp {
     Vec2d by_y;
 
     [[nodiscard]] double area() const { return std::abs(by_x.x * by_y.y - by_x.y * by_y.x); }
-    [[nodiscard]] Vec2d turned(const Vec2d& way) const { return way.x * by_x + way.y * by_y; }
+    [[nodiscard]] Vec2d turned(const Vec2d& offset) const { return offset.x * by_x + offset.y * by_y; }
 };
 
 LocalWarp local_warp(const Registration& registration, const formats::Image& a, const Vec2d& at) {

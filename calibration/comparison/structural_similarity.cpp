@@ -30,7 +30,7 @@ cv::Mat windowed(const cv::Mat& rows) {
     return means;
 }
 
-/// Adds a channel's share of the mean over channels.
+/// Adds a channel's part of the mean over channels.
 void add_channel(const formats::Image& a, const formats::Image& b, std::size_t channel, const Stripe& stripe,
                  formats::Image& map) {
     const cv::Mat rows_a = channel_rows(a, channel, stripe);

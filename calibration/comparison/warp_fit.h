@@ -35,7 +35,7 @@ struct WarpStep {
     bool is_determined = false;
     WarpTerms terms{};
     double contrast = 1.0;
-    double overlap = 0.0;        // share of the frame
+    double overlap = 0.0;        // fraction of the frame
     Eigen::MatrixXd covariance;  // of the model's terms
 };
 

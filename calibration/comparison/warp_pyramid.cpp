@@ -17,7 +17,7 @@ namespace {
 constexpr int kCoarsestSide_px = 48;
 constexpr double kDetail_px = 2.0;  // σ of what is no detail
 constexpr int kDetailReach_px = 6;
-constexpr double kLeastShare = 0.05;
+constexpr double kLeastFraction = 0.05;
 constexpr int kStartSide_px = 256;  // phases are correlated at this size, or below
 constexpr int kTurnSide_px = 128;
 constexpr std::size_t kMostStarts = 8;
@@ -148,7 +148,7 @@ double detail_correlation(const WarpLevel& level, const Warp& warp, int threads)
     cv::Mat inner;
     const int side = 2 * kDetailReach_px + 1;
     cv::erode(both, inner, cv::Mat::ones(side, side, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar::all(0));
-    if (cv::countNonZero(inner) < kLeastShare * static_cast<double>(inner.total())) {
+    if (cv::countNonZero(inner) < kLeastFraction * static_cast<double>(inner.total())) {
         return 0.0;
     }
     const cv::Mat one = detail(level.a);

@@ -7,7 +7,7 @@
 
 #include "calibration/detection/spot_centroid.h"
 #include "calibration/detection/working_copy.h"
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -17,8 +17,8 @@ constexpr double kOuter = 1.6;              // radii of the white that W is take
 constexpr double kLevelBlur_px = 1.0;       // added to the one, and twice to the other
 constexpr double kLeastDiscDarkness = 0.3;  // of the darkness of a black disc
 constexpr int kSmallestDisc_px = 20;
-constexpr double kRoundness = 1.35;  // longer side of a blob's box over the shorter one
-constexpr double kFillShare = 0.65;  // of its box; π/4 of a circle or an ellipse
+constexpr double kRoundness = 1.35;     // longer side of a blob's box over the shorter one
+constexpr double kFillFraction = 0.65;  // of its box; π/4 of a circle or an ellipse
 
 }  // namespace
 
@@ -58,7 +58,7 @@ std::vector<LooseDisc> find_loose_discs(const formats::Image& image, int channel
         const int height = boxes.at<int>(i, cv::CC_STAT_HEIGHT);
         const int area = boxes.at<int>(i, cv::CC_STAT_AREA);
         const bool is_round =
-            std::max(width, height) <= kRoundness * std::min(width, height) && area >= kFillShare * width * height;
+            std::max(width, height) <= kRoundness * std::min(width, height) && area >= kFillFraction * width * height;
         if (area >= kSmallestDisc_px && is_round) {
             blobs.push_back({{middles.at<double>(i, 0), middles.at<double>(i, 1)},
                              std::sqrt(static_cast<double>(area) / std::numbers::pi)});

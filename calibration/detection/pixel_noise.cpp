@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

@@ -16,10 +16,10 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kWindowShare = 0.4;   // half window of the distance to the nearest corner
-constexpr int kSmallestWindow_px = 2;  // half window: 5 × 5 pixels
-constexpr int kLargestWindow_px = 14;  // half window; more pixels than noise asks for, and lines bend
-constexpr int kFitFrom_px = 3;         // half window; in a smaller one the edge model has too few pixels to hold it
+constexpr double kWindowFraction = 0.4;  // half window of the distance to the nearest corner
+constexpr int kSmallestWindow_px = 2;    // half window: 5 × 5 pixels
+constexpr int kLargestWindow_px = 14;    // half window; more pixels than noise asks for, and lines bend
+constexpr int kFitFrom_px = 3;           // half window; in a smaller one the edge model has too few pixels to hold it
 // Edges sharper than a pixel alias; this blur passes 3e-9 of what does. With 0.7 px (6e-5) a render at f/11 on coarse
 // pixels gave a focal length that was 0.02 % too long with every seed (ClosedLoop, tessar).
 constexpr double kBlur_px = 1.0;
@@ -140,7 +140,7 @@ struct RefinedPoint {
 std::optional<RefinedPoint> refine_corner(const formats::Image& image, const cv::Mat& plane, int channel,
                                           const Vec2d& start, const Lattice& lattice, const scene::PointLook& look) {
     const int half_window =
-        std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
+        std::clamp(static_cast<int>(kWindowFraction * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
     if (!all_finite(image, channel, start, half_window) || is_near_frame(image, start)) {
         return std::nullopt;
     }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 #include "engine/formats/image/srgb.h"
 
 namespace lensproof::calibration {

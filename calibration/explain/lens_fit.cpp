@@ -173,7 +173,7 @@ double LensFit::largest_strain() const {
 }
 
 double LensFit::freedom() const {
-    // Of each change the data decide the share 1 − posterior variance / prior variance.
+    // Of each change the data decide the fraction 1 − posterior variance / prior variance.
     const Eigen::MatrixXd known = covariance();
     double decided = 0.0;
     for (const Eigen::Index i : free_changes(belief.sigma)) {

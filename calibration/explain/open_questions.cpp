@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kOpen = 0.5;  // of the tolerance
 constexpr double kUntouched = 0.97;
-constexpr double kListed = 0.15;  // share of a combination that is worth its name
+constexpr double kListed = 0.15;  // a component that is worth its name
 
 bool is_of_lens(const LensChange& change) {
     return change.kind != ChangeKind::scale && change.kind != ChangeKind::sensor_shift;
@@ -28,9 +28,9 @@ Eigen::MatrixXd relative_covariance(const LensFit& fit, const Eigen::MatrixXd& c
     return scale.asDiagonal() * covariance * scale.asDiagonal();
 }
 
-/// A direction over all changes, with those shares that are worth a name.
+/// A direction over all changes, with those components that are worth a name.
 OpenCombination combination(const std::vector<LensChange>& changes, const Eigen::VectorXd& direction, double error) {
-    OpenCombination open{.shares = {}, .standard_error = error};
+    OpenCombination open{.direction = {}, .standard_error = error};
     std::vector<Eigen::Index> order;
     for (Eigen::Index i = 0; i < direction.size(); ++i) {
         if (std::abs(direction[i]) >= kListed) {
@@ -40,7 +40,7 @@ OpenCombination combination(const std::vector<LensChange>& changes, const Eigen:
     std::ranges::stable_sort(order, std::greater<>(), [&](Eigen::Index i) { return std::abs(direction[i]); });
     const double sign = order.empty() || direction[order.front()] > 0.0 ? 1.0 : -1.0;
     for (const Eigen::Index i : order) {
-        open.shares.emplace_back(changes[static_cast<std::size_t>(i)].name, sign * direction[i]);
+        open.direction.emplace_back(changes[static_cast<std::size_t>(i)].name, sign * direction[i]);
     }
     return open;
 }
@@ -144,7 +144,7 @@ std::optional<Suggestion> suggest_picture(const ExplainedLens& lens, const SeenP
     constexpr double kWorthwhile = 0.9;
     const auto directions = open_directions(lens.changes, fit);
     std::optional<Suggestion> best;
-    double best_share = kWorthwhile;
+    double best_fraction = kWorthwhile;
     for (const CandidateSetup& candidate : candidates(seen.camera.chart_mm.front())) {
         const SeenPoints view = chart_view(seen, profile, candidate.distance_mm, candidate.about_x, candidate.about_y);
         LensState state{.changes = fit.state.changes, .poses = {PoseParameters{}}};
@@ -158,8 +158,8 @@ std::optional<Suggestion> suggest_picture(const ExplainedLens& lens, const SeenP
         const Eigen::MatrixXd relative = relative_covariance(fit, with_it.covariance());
         for (const OpenDirection& open : directions) {
             const double error = std::sqrt(std::max(0.0, open.direction.dot(relative * open.direction)));
-            if (error / open.standard_error < best_share) {
-                best_share = error / open.standard_error;
+            if (error / open.standard_error < best_fraction) {
+                best_fraction = error / open.standard_error;
                 best = {candidate_text(candidate), combination(lens.changes, open.direction, open.standard_error),
                         error};
             }

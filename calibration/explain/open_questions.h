@@ -9,11 +9,11 @@
 
 namespace lensproof::calibration {
 
-/// A direction in which the lens may change without the data seeing it. Shares are of the parameters in units of their
-/// tolerances, of unit length; so is the standard error: 1 where the data say nothing, at least a half for what is
-/// listed.
+/// A direction in which the lens may change without the data seeing it. Its components are of the parameters in units
+/// of their tolerances, of unit length; so is the standard error: 1 where the data say nothing, at least a half for
+/// what is listed.
 struct OpenCombination {
-    std::vector<std::pair<std::string, double>> shares;
+    std::vector<std::pair<std::string, double>> direction;
     double standard_error = 0.0;
 };
 

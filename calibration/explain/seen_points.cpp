@@ -68,7 +68,7 @@ void thin_out(std::vector<T>& of, std::size_t most) {
     }
 }
 
-/// The terms' shares of a shift at `q` (calibration/chromatic/chromatic_shift.h), along x and y.
+/// The terms' parts of a shift at `q` (calibration/chromatic/chromatic_shift.h), along x and y.
 Eigen::Matrix<double, 2, kShiftTermCount> shift_design(const Vec2d& q) {
     const double rho2 = dot(q, q);
     Eigen::Matrix<double, 2, kShiftTermCount> design;

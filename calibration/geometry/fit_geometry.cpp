@@ -10,8 +10,8 @@
 #include <numeric>
 
 #include "calibration/geometry/bundle_start.h"
-#include "calibration/statistics/order_statistics.h"
 #include "engine/base/input_error.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

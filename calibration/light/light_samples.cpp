@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr int kCellsAlongFrame = 48;
 constexpr double kDark = 0.02;
 constexpr int kCellMargin = 2;  // cells: an edge can cross one cell and leave a sliver in the next
-constexpr double kClippedShare = 0.01;
+constexpr double kClippedFraction = 0.01;
 constexpr float kFullScale = 1.0F;
 constexpr double kWhitePart = 0.6;  // of a square's side, so that blur and the corners' errors stay outside
 constexpr int kFewestPixels = 4;
@@ -23,7 +23,7 @@ bool is_clipped(const formats::Image& image, int channel) {
     for (std::size_t i = static_cast<std::size_t>(channel); i < image.pixels.size(); i += image.channels.size()) {
         count += image.pixels[i] == kFullScale ? 1 : 0;
     }
-    return static_cast<double>(count) > kClippedShare * image.width * image.height;
+    return static_cast<double>(count) > kClippedFraction * image.width * image.height;
 }
 
 // Mean and its standard error, pixel by pixel.

@@ -9,9 +9,9 @@
 
 #include "calibration/light/even_spline.h"
 #include "calibration/statistics/linear_fit.h"
-#include "calibration/statistics/order_statistics.h"
 #include "calibration/statistics/smoothed_fit.h"
 #include "engine/base/input_error.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

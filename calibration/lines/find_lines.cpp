@@ -33,25 +33,25 @@ LineSegment bright_side_first(const cv::Mat& plane, const LineSegment& segment, 
 // The places where lines of one way have points, to two pixels: the other side of a thin bar goes the other way.
 class Taken {
   public:
-    [[nodiscard]] bool holds(const Vec2d& p, const Vec2d& way) const {
+    [[nodiscard]] bool holds(const Vec2d& p, const Vec2d& direction) const {
         const auto [x, y] = cell(p);
         for (int dx = -1; dx <= 1; ++dx) {
             for (int dy = -1; dy <= 1; ++dy) {
-                const auto known = ways_.find({x + dx, y + dy});
-                if (known != ways_.end() && known->second.x * way.x + known->second.y * way.y > 0.0) {
+                const auto known = directions_.find({x + dx, y + dy});
+                if (known != directions_.end() && known->second.x * direction.x + known->second.y * direction.y > 0.0) {
                     return true;
                 }
             }
         }
         return false;
     }
-    void add(const Vec2d& p, const Vec2d& way) { ways_.emplace(cell(p), way); }
+    void add(const Vec2d& p, const Vec2d& direction) { directions_.emplace(cell(p), direction); }
 
   private:
     static std::pair<int, int> cell(const Vec2d& p) {
         return {static_cast<int>(std::lround(p.x)), static_cast<int>(std::lround(p.y))};
     }
-    std::map<std::pair<int, int>, Vec2d> ways_;
+    std::map<std::pair<int, int>, Vec2d> directions_;
 };
 
 // Longest first; a line that has a longer one's points is the same edge, found twice.
@@ -60,15 +60,16 @@ std::vector<SceneLine> each_once(std::vector<SceneLine> lines) {
     Taken taken;
     std::vector<SceneLine> kept;
     for (SceneLine& line : lines) {
-        const Vec2d way = line.points_px.back() - line.points_px.front();
-        const auto shared = std::ranges::count_if(line.points_px, [&](const Vec2d& p) { return taken.holds(p, way); });
+        const Vec2d direction = line.points_px.back() - line.points_px.front();
+        const auto shared =
+            std::ranges::count_if(line.points_px, [&](const Vec2d& p) { return taken.holds(p, direction); });
         if (static_cast<double>(shared) > kMostShared * static_cast<double>(line.points_px.size())) {
             continue;
         }
         for (std::size_t i = 0; i < line.points_px.size(); ++i) {
-            taken.add(line.points_px[i], way);
+            taken.add(line.points_px[i], direction);
             if (i > 0) {
-                taken.add(0.5 * (line.points_px[i] + line.points_px[i - 1]), way);
+                taken.add(0.5 * (line.points_px[i] + line.points_px[i - 1]), direction);
             }
         }
         kept.push_back(std::move(line));

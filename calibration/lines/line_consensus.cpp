@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "calibration/lines/line_consensus.h"
-#include "calibration/statistics/order_statistics.h"
 #include "calibration/statistics/student.h"
 #include "engine/base/input_error.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -21,7 +21,7 @@ using Eigen::Index;
 constexpr double kLeastPointSigma_px = 0.02;  // of a point: what repeats along an edge is not scatter
 constexpr double kTolerance_px = 0.3;         // of a straight line's points, where noise is less,
 constexpr double kTolerancePart = 3e-4;       // or of half the diagonal
-constexpr double kStraightShare = 0.5;        // of the lines' length, which a lens has to straighten
+constexpr double kStraightFraction = 0.5;     // of the lines' length, which a lens has to straighten
 constexpr double kFisheyeGain = 1.02;         // of the straight length, by which a fisheye's law has to do better
 constexpr double kLeastCosine = 0.02;         // tan θ has no value at 90°
 constexpr int kFewestTerms = 2;               // of a lens's shape
@@ -290,7 +290,7 @@ LineDistortion fit_line_distortion(std::vector<SceneLine>& lines, int width_px, 
         straight += line.used ? chord_px(line) : 0.0;
         all += chord_px(line);
     }
-    if (straight < kStraightShare * all) {
+    if (straight < kStraightFraction * all) {
         throw InputError(fmt::format(
             "the lens that straightens most of {} long edges leaves {:.0f} % of their length bent: expected pictures "
             "in which most of the long edges are straight in the world, and a lens that is round about its axis",

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLeastSpacing_px = 3.0;
 constexpr double kMostPlaces = 120.0;
 constexpr double kReach_px = 6.0;
-constexpr double kLeastSeenShare = 0.33;  // of the places, which show the edge: half of a chessboard's do
+constexpr double kLeastSeenFraction = 0.33;  // of the places, which show the edge: half of a chessboard's do
 constexpr std::size_t kFewestLinePoints = 15;
 constexpr int kCurveDegree = 5;  // of the curve across the chord
 constexpr double kOffCurveSigmas = 4.0;
@@ -113,11 +113,11 @@ std::vector<Vec2d> corners_of(const LineChain& chain) {
     return corners;
 }
 
-std::vector<EdgePiece> pieces_along(const std::vector<Vec2d>& way, double spacing, double reach) {
+std::vector<EdgePiece> pieces_along(const std::vector<Vec2d>& places, double spacing, double reach) {
     std::vector<EdgePiece> pieces;
     double next = 0.5 * spacing;  // along the corner's leg
-    for (std::size_t i = 1; i < way.size(); ++i) {
-        const LineSegment leg{way[i - 1], way[i]};
+    for (std::size_t i = 1; i < places.size(); ++i) {
+        const LineSegment leg{places[i - 1], places[i]};
         const double length = length_of(leg);
         if (!(length > 0.0)) {
             continue;
@@ -151,15 +151,15 @@ std::optional<SceneLine> trace_line(const cv::Mat& plane, const LineChain& chain
     if (!rough) {
         return std::nullopt;
     }
-    std::vector<Vec2d> way;
+    std::vector<Vec2d> places;
     const int steps = std::max(8, static_cast<int>(2.0 * rough->frame.half_px / spacing));
     for (int i = 0; i <= steps; ++i) {
-        way.push_back(place_on(*rough, -1.0 + 2.0 * i / steps));
+        places.push_back(place_on(*rough, -1.0 + 2.0 * i / steps));
     }
-    const std::vector<EdgePiece> pieces = pieces_along(way, spacing, kReach_px);
+    const std::vector<EdgePiece> pieces = pieces_along(places, spacing, kReach_px);
     const std::vector<Vec2d> points = places_at(plane, pieces);
     const auto fine = smooth_curve(points);
-    if (!fine || static_cast<double>(points.size()) < kLeastSeenShare * static_cast<double>(pieces.size())) {
+    if (!fine || static_cast<double>(points.size()) < kLeastSeenFraction * static_cast<double>(pieces.size())) {
         return std::nullopt;
     }
     SceneLine line;

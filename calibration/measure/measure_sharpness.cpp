@@ -6,9 +6,9 @@
 #include "calibration/sharpness/chart_edges.h"
 #include "calibration/sharpness/find_edges.h"
 #include "calibration/sharpness/sharpness_field.h"
-#include "calibration/statistics/order_statistics.h"
 #include "engine/base/angle.h"
 #include "engine/base/input_error.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

@@ -67,9 +67,9 @@ class ListReader {
 
 void read_centre(ListReader& values, const std::string& name, std::array<double, 2>& centre) {
     values.finite(centre);
-    for (const double share : centre) {
-        if (!(share >= 0.0 && share <= 1.0)) {
-            throw InputError(fmt::format("{}: an opcode's centre is at {}, expected 0 to 1", name, share));
+    for (const double fraction : centre) {
+        if (!(fraction >= 0.0 && fraction <= 1.0)) {
+            throw InputError(fmt::format("{}: an opcode's centre is at {}, expected 0 to 1", name, fraction));
         }
     }
 }

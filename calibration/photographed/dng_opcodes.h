@@ -17,7 +17,7 @@ struct RectilinearWarp {
         std::array<double, 2> tangential{};
     };
     std::vector<Plane> planes;               // one for all, or red, green and blue
-    std::array<double, 2> centre{0.5, 0.5};  // shares of the picture's width and height
+    std::array<double, 2> centre{0.5, 0.5};  // fractions of the picture's width and height
 };
 
 /// FixVignetteRadial: the picture is multiplied by 1 + k0 r² + k1 r⁴ + … + k4 r¹⁰, in the same unit.

@@ -18,7 +18,7 @@ constexpr int kFits = 50;
 struct SharedDirection {
     double ideal = 0.0;      // g(θ) of the photographed lens's projection
     double simulated = 0.0;  // green's height
-    double weight = 0.0;     // share of the heights that it stands for
+    double weight = 0.0;     // fraction of the heights that it stands for
 };
 
 /// Each stands for the heights nearer to it than to its neighbours.

@@ -15,7 +15,7 @@ struct Residual {
     double largest_um = 0.0;
 };
 
-/// A height as a share of the half-diagonal, and a value there.
+/// A height as a fraction of the half-diagonal, and a value there.
 using CurvePoint = std::array<double, 2>;
 
 /// A photographed lens against a simulated one where both image directions: photographed at r_d(F g(θ)), simulated at
@@ -23,7 +23,7 @@ using CurvePoint = std::array<double, 2>;
 struct DistortionAgreement {
     Residual residual;
     double scale = 0.0;  // the photographed lens's focal length on the axis, F r_d'(0), over the simulated one's
-    double reach = 0.0;  // the height, as a share of the half-diagonal, up to which both image
+    double reach = 0.0;  // the height, as a fraction of the half-diagonal, up to which both image
     /// 100 (r / (f g(θ)) − 1) with the simulated focal length f: the curves lie upon each other where the lenses agree,
     /// and the photographed one starts at 100 (scale − 1).
     std::vector<CurvePoint> photographed_percent{};

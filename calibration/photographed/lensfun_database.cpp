@@ -21,8 +21,7 @@ namespace lensproof::calibration {
 
 namespace {
 
-constexpr double kSameCrop =
-    0.005;  // a share: databases write 1.53, 1.534 and 1.5 of one format, and mean different ones
+constexpr double kSameCrop = 0.005;  // databases write 1.53, 1.534 and 1.5 of one format, and mean different ones
 constexpr std::size_t kNamesOffered = 4;
 
 /// Every language's text: they stand one behind the other, each but the first after its language, up to an empty one.

@@ -23,8 +23,8 @@ double radius_of(const RadialPolynomial& polynomial, double r) {
 
 }  // namespace
 
-double MeasuredVignetting::brightness(double share) const {
-    const double x2 = share * share;
+double MeasuredVignetting::brightness(double fraction) const {
+    const double x2 = fraction * fraction;
     double sum = 0.0;
     for (std::size_t i = k.size(); i-- > 0;) {
         sum = (sum + k[i]) * x2;

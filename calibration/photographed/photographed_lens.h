@@ -31,7 +31,7 @@ struct LateralColour {
     ChannelRadius blue;
 };
 
-/// Light at a share x of the half-diagonal over that on the axis: p(x) = 1 + k1 x² + k2 x⁴ + … (lensfun's "pa"), or
+/// Light at a fraction x of the half-diagonal over that on the axis: p(x) = 1 + k1 x² + k2 x⁴ + … (lensfun's "pa"), or
 /// 1 / p(x) where that is what corrects it.
 struct MeasuredVignetting {
     double f_number = 0.0;
@@ -39,7 +39,7 @@ struct MeasuredVignetting {
     std::array<double, 5> k{};
     bool corrects = false;
 
-    [[nodiscard]] double brightness(double share) const;
+    [[nodiscard]] double brightness(double fraction) const;
 };
 
 /// What is said of a lens at one focal length, in lensfun's terms (lensfun.h 0.3.3; tests ask the library): a

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

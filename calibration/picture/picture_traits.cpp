@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibration/detection/pixel_noise.h"
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

@@ -218,13 +218,13 @@ ChartMap::Pixel ChartMap::pixel(int x, int y) const {
     const Vec2d d = knot(i + 1, j + 1) - a - b - c;
     const Vec2d e = 0.5 * second_difference(i, j, 1, 0);
     const Vec2d f = 0.5 * second_difference(i, j, 0, 1);
-    constexpr double kShare = 1.0 / kKnot_px;
+    constexpr double kPerPixel = 1.0 / kKnot_px;
     return {.corner = a + from_u * (b + (from_u - 1.0) * e) + from_v * (c + from_u * d + (from_v - 1.0) * f),
-            .along_x = kShare * (b + from_v * d + (2.0 * from_u - 1.0) * e),
-            .along_y = kShare * (c + from_u * d + (2.0 * from_v - 1.0) * f),
-            .twist = kShare * kShare * d,
-            .bend_x = kShare * kShare * e,
-            .bend_y = kShare * kShare * f};
+            .along_x = kPerPixel * (b + from_v * d + (2.0 * from_u - 1.0) * e),
+            .along_y = kPerPixel * (c + from_u * d + (2.0 * from_v - 1.0) * f),
+            .twist = kPerPixel * kPerPixel * d,
+            .bend_x = kPerPixel * kPerPixel * e,
+            .bend_y = kPerPixel * kPerPixel * f};
 }
 
 std::optional<float> ChartMap::only_tone(const cv::Rect& pixels) const {

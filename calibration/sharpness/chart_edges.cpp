@@ -11,9 +11,9 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kLengthShare = 0.7;  // of a side: corners stay outside, also where perspective shears the square
-constexpr double kDepthShare = 0.4;   // of a square, on either side of its edge
-constexpr double kGapShare = 0.8;     // of the white up to the next dark thing
+constexpr double kLengthFraction = 0.7;  // of a side: corners stay outside, also where perspective shears the square
+constexpr double kDepthFraction = 0.4;   // of a square, on either side of its edge
+constexpr double kGapFraction = 0.8;     // of the white up to the next dark thing
 constexpr double kLeastHalfLength_px = 8.0;
 constexpr double kLeastHalfWidth_px = 4.0;
 constexpr double kMostHalfLength_px = 48.0;
@@ -43,7 +43,7 @@ std::optional<EdgeRegion> region(const LocalMap& map, const Vec2d& middle, const
     const double depth = std::abs(side.x * across.y - side.y * across.x) / length;  // px per mm, at right angles
     EdgeRegion result{.centre_px = {map.at.x + offset.x, map.at.y + offset.y},
                       .along = {side.x / length, side.y / length},
-                      .half_length_px = std::min(kLengthShare * half_length_mm * length, kMostHalfLength_px),
+                      .half_length_px = std::min(kLengthFraction * half_length_mm * length, kMostHalfLength_px),
                       .half_width_px = std::min(depth_mm * depth, kMostHalfWidth_px)};
     const bool is_large = result.half_length_px >= kLeastHalfLength_px && result.half_width_px >= kLeastHalfWidth_px;
     return is_large ? std::optional(result) : std::nullopt;
@@ -95,7 +95,7 @@ std::vector<EdgeRegion> regions_of(const scene::SquareSides& sides, const Grid& 
     const double angle = radians(sides.angle_deg);
     const double half = 0.5 * sides.side_mm;
     const double gap = grid.pitch_mm() - sides.side_mm * (std::abs(std::cos(angle)) + std::abs(std::sin(angle)));
-    const double depth = std::min(kDepthShare * sides.side_mm, kGapShare * gap);
+    const double depth = std::min(kDepthFraction * sides.side_mm, kGapFraction * gap);
     std::vector<EdgeRegion> regions;
     for (int row = 0; row < grid.size().rows; ++row) {
         for (int column = 0; column < grid.size().columns; ++column) {
@@ -115,7 +115,7 @@ std::vector<EdgeRegion> regions_of(const scene::SquareSides& sides, const Grid& 
 
 std::vector<EdgeRegion> regions_of(const scene::CellSides& sides, const Grid& grid) {
     const double square = grid.pitch_mm();
-    const double depth = std::min(kDepthShare * square, kGapShare * sides.even_mm);
+    const double depth = std::min(kDepthFraction * square, kGapFraction * sides.even_mm);
     std::vector<EdgeRegion> regions;
     for (int row = 0; row < grid.size().rows; ++row) {
         for (int column = 0; column < grid.size().columns; ++column) {

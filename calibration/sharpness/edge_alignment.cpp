@@ -13,7 +13,7 @@ namespace {
 constexpr double kShortestHalfLength_px = 8.0;
 constexpr double kNarrowestHalfWidth_px = 3.0;
 constexpr double kLeastAlignedContrast = 0.1;  // (bright − dark) / (bright + dark)
-constexpr double kClippedEdgeShare = 0.01;
+constexpr double kClippedEdgeFraction = 0.01;
 constexpr double kCutNoise = 0.02;  // zeros among this fraction and its complement: noise cut at black
 constexpr double kAlignmentBin_px = 0.5;
 constexpr int kIterations = 20;
@@ -76,7 +76,7 @@ std::string unusable(const std::vector<EdgePixel>& pixels, const EdgeRegion& reg
         dark += p.across < 0.0 ? 1.0 : 0.0;
         zeros += p.across < 0.0 && p.value == 0.0 ? 1.0 : 0.0;
     }
-    if (full > kClippedEdgeShare * static_cast<double>(pixels.size())) {
+    if (full > kClippedEdgeFraction * static_cast<double>(pixels.size())) {
         return "is clipped at white";
     }
     return zeros > kCutNoise * dark && zeros < (1.0 - kCutNoise) * dark ? "is clipped at black" : "";

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibration/detection/working_copy.h"
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

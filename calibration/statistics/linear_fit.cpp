@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {

@@ -19,7 +19,7 @@ struct PlacedResidual {
 /// kLeastResiduals points are left out; places are the mean of the points'.
 struct ResidualCurves {
     double rms_px = 0.0;    // of a coordinate
-    double beyond_3 = 0.0;  // share of the coordinates beyond three times that; of a Gaussian 0.0027
+    double beyond_3 = 0.0;  // fraction of the coordinates beyond three times that; of a Gaussian 0.0027
     Curve density;          // of a coordinate over rms_px, in bins of a quarter from −5 to 5
     Curve radial;           // px, over the image height
     Curve tangential;

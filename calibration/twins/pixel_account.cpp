@@ -106,7 +106,7 @@ cv::Mat blurred(const cv::Mat& plane, double sigma_px) {
     return result;
 }
 
-double share(double before, double after) {
+double explained(double before, double after) {
     return std::sqrt(std::max(0.0, before * before - after * after));
 }
 
@@ -131,11 +131,11 @@ PixelAccount account_of_pixels(const PhotoAndTwin& pictures, const std::vector<T
     const double noise = std::hypot(pictures.photo_noise, gain * pictures.twin_noise);
     return {.pixels = static_cast<int>(pixels.size()),
             .as_rendered = first / pictures.contrast,
-            .light = share(first, lit) / pictures.contrast,
-            .place = share(lit, placed) / pictures.contrast,
-            .sharpness = share(placed, sharp) / pictures.contrast,
+            .light = explained(first, lit) / pictures.contrast,
+            .place = explained(lit, placed) / pictures.contrast,
+            .sharpness = explained(placed, sharp) / pictures.contrast,
             .noise = std::min(noise, sharp) / pictures.contrast,
-            .unexplained = share(sharp, noise) / pictures.contrast};
+            .unexplained = explained(sharp, noise) / pictures.contrast};
 }
 
 formats::Image difference_among(const PhotoAndTwin& pictures, const std::vector<TwinPoint>& points) {

@@ -7,8 +7,8 @@
 
 namespace lensproof::calibration {
 
-/// Root mean squares over the pixels among the chart's points, in shares of the chart's contrast in the photo. One
-/// thing after the other is taken into account, and what it lowers is its share: light, place, sharpness; of what is
+/// Root mean squares over the pixels among the chart's points, in fractions of the chart's contrast in the photo. One
+/// thing after the other is taken into account, and what it lowers is its part: light, place, sharpness; of what is
 /// left noise explains a part.
 ///
 ///   light      an offset, and a factor that varies over the frame by a polynomial of second degree: vignetting, uneven
@@ -39,7 +39,7 @@ struct PhotoAndTwin {
 /// The points are of this photo alone; at least four, not on a line.
 PixelAccount account_of_pixels(const PhotoAndTwin& pictures, const std::vector<TwinPoint>& points);
 
-/// Photo less twin, of the channels to be compared, in shares of the contrast; NaN but among the points.
+/// Photo less twin, of the channels to be compared, in fractions of the contrast; NaN but among the points.
 formats::Image difference_among(const PhotoAndTwin& pictures, const std::vector<TwinPoint>& points);
 
 /// The twin in the photo's exposure: each of the photo's channels by a factor and an offset, over the pixels among the

@@ -101,19 +101,19 @@ void add_chart(const std::vector<TwinPoint>& points, Design& design) {
     }
 }
 
-/// Of what a block took from the sum of squares: of n coordinates with variance s² of noise, a share of variance λ s² /
-/// n makes squares that are s² times χ² of the block's degrees of freedom k and noncentrality λ, of which the mean is
-/// k + λ and the variance 2 (k + 2 λ).
-TwinShare share_of(const Fitted& before, const Fitted& after, double variance, double coordinates) {
+/// Of what a block took from the sum of squares: of n coordinates with variance s² of noise, a fraction of variance λ
+/// s² / n makes squares that are s² times χ² of the block's degrees of freedom k and noncentrality λ, of which the mean
+/// is k + λ and the variance 2 (k + 2 λ).
+TwinDisplacement displacement_of(const Fitted& before, const Fitted& after, double variance, double coordinates) {
     const auto freedom = static_cast<double>(after.rank - before.rank);
     const double squares = (before.squares() - after.squares()) / variance;
     const double noncentral = std::max(0.0, squares - freedom);
     const double mean_square = variance * noncentral / coordinates;
     const double spread = variance * std::sqrt(2.0 * (freedom + 2.0 * noncentral)) / coordinates;
-    TwinShare share{.rms_px = std::sqrt(mean_square)};
-    share.standard_error_px = std::sqrt(mean_square + spread) - share.rms_px;
-    share.significance = freedom > 0.0 ? squares / freedom : 0.0;
-    return share;
+    TwinDisplacement displacement{.rms_px = std::sqrt(mean_square)};
+    displacement.standard_error_px = std::sqrt(mean_square + spread) - displacement.rms_px;
+    displacement.significance = freedom > 0.0 ? squares / freedom : 0.0;
+    return displacement;
 }
 
 Curve radial_curve(const std::vector<TwinPoint>& points, const std::vector<Vec2d>& lens_px, const FrameScale& frame,
@@ -185,13 +185,13 @@ PointAccount account_of_points(const std::vector<TwinPoint>& points, int width_p
     PointAccount account{.points = static_cast<int>(points.size()),
                          .views = static_cast<int>(views.size()),
                          .displaced_px = std::sqrt(displaced.squaredNorm() / static_cast<double>(rows)),
-                         .lens = share_of(poses, lens, variance, static_cast<double>(rows)),
+                         .lens = displacement_of(poses, lens, variance, static_cast<double>(rows)),
                          .chart = {},
                          .rest_px = std::sqrt(variance),
                          .expected_px = std::sqrt(expected / known),
                          .lens_px = {}};
     if (tells_chart) {
-        account.chart = share_of(lens, rest, variance, static_cast<double>(rows));
+        account.chart = displacement_of(lens, rest, variance, static_cast<double>(rows));
     }
     const Eigen::VectorXd by_lens = poses.residual - lens.residual;
     for (Eigen::Index i = 0; i < rows; i += 2) {

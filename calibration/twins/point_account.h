@@ -25,8 +25,8 @@ struct TwinPoint {
     Vec2d by_chart_y_px;
 };
 
-/// A share of all displacements: root mean square of a coordinate, px, what noise adds taken out.
-struct TwinShare {
+/// A part of all displacements: root mean square of a coordinate, px, what noise adds taken out.
+struct TwinDisplacement {
     double rms_px = std::nan("");
     double standard_error_px = 0.0;
     double significance = 0.0;  // its mean square a degree of freedom over that of what remains (F)
@@ -45,12 +45,12 @@ struct PointAccount {
     int points = 0;
     int views = 0;
     double displaced_px = 0.0;  // rms of a coordinate, as measured
-    TwinShare lens;
-    TwinShare chart;             // NaN for fewer than three views: it cannot be told from the lens
+    TwinDisplacement lens;
+    TwinDisplacement chart;      // NaN for fewer than three views: it cannot be told from the lens
     double rest_px = 0.0;        // standard deviation of a coordinate
     double expected_px = 0.0;    // rms of the points' standard errors where they are known; NaN: of none
-    Curve radial_px{};           // what the lens's share does along the radius, over the image height
-    std::vector<Vec2d> lens_px;  // the lens's share at each point
+    Curve radial_px{};           // what the lens does along the radius, over the image height
+    std::vector<Vec2d> lens_px;  // the lens's part at each point
 };
 
 /// `width_px`, `height_px`: of the frame. At least ten points, and of every view four.

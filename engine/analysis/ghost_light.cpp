@@ -60,7 +60,7 @@ GridRays grid_rays(const GhostScene& scene, const optics::GhostPath& path, const
                    Vec2d shift) {
     std::vector<GridCell> places;
     std::vector<Vec2d> offsets;
-    const double share = spacing * spacing / scene.pupil_area;
+    const double ray_weight = spacing * spacing / scene.pupil_area;
     const auto first_node = [&](int cell, double shifted) {
         return static_cast<int>(std::ceil(cell * region.cell / spacing - shifted));
     };
@@ -78,7 +78,7 @@ GridRays grid_rays(const GhostScene& scene, const optics::GhostPath& path, const
         if (landed[i]) {
             grid.at.emplace(GhostRegion::key(places[i].x, places[i].y), grid.rays.size());
             grid.places.push_back(places[i]);
-            grid.rays.push_back({offsets[i], landed[i]->point, share * landed[i]->transmittance});
+            grid.rays.push_back({offsets[i], landed[i]->point, ray_weight * landed[i]->transmittance});
         }
     }
     return grid;
@@ -122,13 +122,13 @@ void Footprint::add_point(Vec2d at, double energy) {
     }
     const auto left = static_cast<std::size_t>(x);
     const auto low = static_cast<std::size_t>(y);
-    const double right_share = x - static_cast<double>(left);
-    const double high_share = y - static_cast<double>(low);
+    const double right_weight = x - static_cast<double>(left);
+    const double high_weight = y - static_cast<double>(low);
     double* pixel = &pixels_[low * kPixels + left];
-    pixel[0] += energy * (1.0 - right_share) * (1.0 - high_share);
-    pixel[1] += energy * right_share * (1.0 - high_share);
-    pixel[kPixels] += energy * (1.0 - right_share) * high_share;
-    pixel[kPixels + 1] += energy * right_share * high_share;
+    pixel[0] += energy * (1.0 - right_weight) * (1.0 - high_weight);
+    pixel[1] += energy * right_weight * (1.0 - high_weight);
+    pixel[kPixels] += energy * (1.0 - right_weight) * high_weight;
+    pixel[kPixels + 1] += energy * right_weight * high_weight;
 }
 
 void Footprint::add(Vec2d centre, Vec2d u, Vec2d v, double energy) {

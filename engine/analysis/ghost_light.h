@@ -46,7 +46,7 @@ struct LandedRay {
     double energy;
 };
 
-/// Energies are shares of the light that enters the entrance pupil.
+/// Energies are fractions of the light that enters the entrance pupil.
 struct GhostLight {
     double energy = 0.0;
     double standard_error = 0.0;

@@ -168,7 +168,7 @@ class Mesh {
 
     /// What of a cell's light is not known, and whether it lands where it would have to be divided for.
     struct Doubt {
-        double lit = 0.0;        // share of it that lands, about
+        double lit = 0.0;        // fraction of it that lands, about
         double energy = 0.0;     // what lands, in units² of the front
         double rim_error = 0.0;  // likewise
         bool is_bent = false;
@@ -324,8 +324,8 @@ class Mesh {
             offsets_.clear();
             for (const Cut& cut : cuts_) {
                 // Not quite at an end, so that both close in.
-                const double share = std::clamp(guess(cut), 0.02, 0.98);
-                offsets_.push_back(offset(cut.lit.front + share * (cut.dark.front - cut.lit.front)));
+                const double fraction = std::clamp(guess(cut), 0.02, 0.98);
+                offsets_.push_back(offset(cut.lit.front + fraction * (cut.dark.front - cut.lit.front)));
             }
             trace(offsets_);
             for (std::size_t i = 0; i < cuts_.size(); ++i) {
@@ -340,11 +340,11 @@ class Mesh {
         if (!cut.dark.ray.arrives) {
             return cut.lit;
         }
-        const double share = guess(cut);
+        const double fraction = guess(cut);
         Corner rim = cut.lit;
-        rim.front = rim.front + share * (cut.dark.front - rim.front);
-        rim.ray.point = rim.ray.point + share * (cut.dark.ray.point - rim.ray.point);
-        rim.ray.transmittance += share * (cut.dark.ray.transmittance - rim.ray.transmittance);
+        rim.front = rim.front + fraction * (cut.dark.front - rim.front);
+        rim.ray.point = rim.ray.point + fraction * (cut.dark.ray.point - rim.ray.point);
+        rim.ray.transmittance += fraction * (cut.dark.ray.transmittance - rim.ray.transmittance);
         return rim;
     }
 

@@ -13,7 +13,7 @@ struct MeshSettings {
     double place_error = 0.0;    // mm on the sensor: half a pixel, say
 };
 
-/// Energies as shares of the light that enters the entrance pupil.
+/// Energies as fractions of the light that enters the entrance pupil.
 struct MeshedGhost {
     double energy = 0.0;        // inside the image circle, as in GhostLight
     double energy_bound = 0.0;  // what the rims' chords cut off or add is estimated not to exceed

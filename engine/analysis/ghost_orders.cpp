@@ -15,10 +15,10 @@ using Bundle = std::vector<TravellingRay>;
 /// One branch's search.
 class Branches {
   public:
-    Branches(const GhostScene& scene, double tolerance, double ray_share)
+    Branches(const GhostScene& scene, double tolerance, double ray_weight)
         : scene_(scene),
           tolerance_(tolerance),
-          ray_share_(ray_share),
+          ray_weight_(ray_weight),
           sensor_(static_cast<int>(scene.lens.surfaces.size())) {
         for (const int index : reflectors(scene)) {
             reflects_.resize(static_cast<std::size_t>(index) + 1);
@@ -75,7 +75,7 @@ class Branches {
     [[nodiscard]] double energy(const Bundle& bundle) const {
         double sum = 0.0;
         for (const TravellingRay& ray : bundle) {
-            sum += ray_share_ * ray.transmittance(scene_.lens);
+            sum += ray_weight_ * ray.transmittance(scene_.lens);
         }
         return sum;
     }
@@ -83,7 +83,7 @@ class Branches {
     [[nodiscard]] double end_bound(const optics::GhostPath& path, const Bundle& bundle) const {
         double largest = 0.0;
         for (const TravellingRay& ray : bundle) {
-            largest = std::max(largest, ray_share_ * ray.transmittance(scene_.lens));
+            largest = std::max(largest, ray_weight_ * ray.transmittance(scene_.lens));
         }
         Bundle out = bundle;
         for (int index = path.back() + 1; index < sensor_; ++index) {
@@ -102,7 +102,7 @@ class Branches {
 
     const GhostScene& scene_;
     double tolerance_;
-    double ray_share_;
+    double ray_weight_;
     int sensor_;
     std::vector<bool> reflects_;
 };

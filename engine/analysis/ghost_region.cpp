@@ -130,7 +130,7 @@ Cells divided(const Cells& cells) {
     return parts;
 }
 
-GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, double landing_share, int first) {
+GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, double landing_fraction, int first) {
     GhostRegion region{
         .across = first, .cell = scene.beam.side() / first, .corner = scene.beam.corner(), .cells = {}, .held = {}};
     Cells cells;
@@ -148,7 +148,7 @@ GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, 
                 landing += grid.lands(cell) ? 1 : 0;
             }
         }
-        const bool enough = static_cast<double>(landing) >= landing_share * static_cast<double>(region.cells.size());
+        const bool enough = static_cast<double>(landing) >= landing_fraction * static_cast<double>(region.cells.size());
         if (enough || division == kMostDivisions || region.cells.size() > kMostCells) {
             break;
         }
@@ -179,15 +179,15 @@ HeldCells::HeldCells(std::vector<GridCell> cells) {
     begins_.push_back(static_cast<std::uint32_t>(stretches_.size()));
 }
 
-GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path, double landing_share) {
+GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path, double landing_fraction) {
     int first = kFirstGrid;
     while (first < kFinestFirstGrid && scene.beam.side() / first > 0.5 * std::sqrt(scene.pupil_area)) {
         first *= 2;
     }
-    GhostRegion region = region_from(scene, path, landing_share, first);
+    GhostRegion region = region_from(scene, path, landing_fraction, first);
     if (region.cells.empty() && first < kSecondGrid) {
         const int searched = region.search_rays;
-        region = region_from(scene, path, landing_share, kSecondGrid);
+        region = region_from(scene, path, landing_fraction, kSecondGrid);
         region.search_rays += searched;
     }
     return region;

@@ -62,12 +62,12 @@ struct GhostRegion {
 /// land, two rules more keep the edges of total reflection out: the same of 1 − limit / r, which is bounded where r
 /// grows beyond all limits there, and that where no ray around a cell arrives there is nothing to be found. From 32 ×
 /// 32 cells (or more, up to 256 × 256, so that one is half as wide as the entrance pupil) they are divided until
-/// `landing_share` of their centres land (of a grid in cells of which 0.86 do, four rays in five will), at most ten
+/// `landing_fraction` of their centres land (of a grid in cells of which 0.86 do, four rays in five will), at most ten
 /// times. Where nothing is left, all is done again from 128 × 128.
 ///
 /// What may be missed lies where a margin dips by more within a cell of the first grid than its differences to all
 /// neighbours tell, or in a part apart from the first ten cells that is smaller than they. `measure_ghost` looks for
 /// such light outside the region too.
-GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path, double landing_share = 0.86);
+GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path, double landing_fraction = 0.86);
 
 }  // namespace lensproof::analysis

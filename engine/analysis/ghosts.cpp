@@ -125,42 +125,43 @@ class WeighedRays {
     double energy_ = 0.0;
 };
 
-SurfaceShare surface_share(const GhostScene& scene, const WeighedRays& rays, int surface, double wavelength_nm) {
-    SurfaceShare share{.surface = surface};
+SurfaceContribution surface_contribution(const GhostScene& scene, const WeighedRays& rays, int surface,
+                                         double wavelength_nm) {
+    SurfaceContribution contribution{.surface = surface};
     GhostScene other = scene;
     const int sensor = static_cast<int>(scene.lens.surfaces.size());
     if (surface == sensor || optics::reflects_by_blades(scene.lens.surfaces[static_cast<std::size_t>(surface)])) {
         (surface == sensor ? other.mirrors.sensor : other.mirrors.blades) = 0.0;
-        share.perfect = rays.gone_in(other);
-        return share;
+        contribution.perfect = rays.gone_in(other);
+        return contribution;
     }
     other.device = nullptr;  // which has the lens as it is
     other.lens = with_coating(scene.lens, surface, {.layers = {}, .reflectance = 0.0});
-    share.perfect = rays.gone_in(other);
+    contribution.perfect = rays.gone_in(other);
     constexpr double kIndex = 1.38;  // of magnesium fluoride (Macleod, Thin-Film Optical Filters)
     constexpr double kCentreNm = 550.0;
     other.lens = with_coating(scene.lens, surface,
                               {.layers = {{kIndex, 0.25 * kCentreNm / kIndex / wavelength_nm}}, .reflectance = {}});
-    share.quarter_wave = rays.gone_in(other);
-    return share;
+    contribution.quarter_wave = rays.gone_in(other);
+    return contribution;
 }
 
-std::vector<SurfaceShare> surface_shares(const GhostScene& scene, const GhostSurvey& survey,
-                                         const GhostSettings& settings) {
+std::vector<SurfaceContribution> surface_contributions(const GhostScene& scene, const GhostSurvey& survey,
+                                                       const GhostSettings& settings) {
     const WeighedRays rays(scene, survey.ghosts, survey.energy);
     const std::vector<int> surfaces = reflectors(scene);
-    std::vector<SurfaceShare> shares(surfaces.size());
+    std::vector<SurfaceContribution> contributions(surfaces.size());
     parallel_for(static_cast<int>(surfaces.size()), settings.threads, [&](int i) {
         const int surface = surfaces[static_cast<std::size_t>(i)];
-        SurfaceShare& share = shares[static_cast<std::size_t>(i)];
-        share = surface_share(scene, rays, surface, settings.reference_wavelength_nm);
+        SurfaceContribution& contribution = contributions[static_cast<std::size_t>(i)];
+        contribution = surface_contribution(scene, rays, surface, settings.reference_wavelength_nm);
         for (const Ghost& ghost : survey.ghosts) {
             const bool reflects = std::ranges::find(ghost.path, surface) != ghost.path.end();
-            share.involved += reflects && survey.energy > 0.0 ? ghost.light.energy / survey.energy : 0.0;
+            contribution.involved += reflects && survey.energy > 0.0 ? ghost.light.energy / survey.energy : 0.0;
         }
     });
-    std::ranges::stable_sort(shares, std::ranges::greater(), &SurfaceShare::perfect);
-    return shares;
+    std::ranges::stable_sort(contributions, std::ranges::greater(), &SurfaceContribution::perfect);
+    return contributions;
 }
 
 std::shared_ptr<GhostDevice> ghost_device(const optics::TraceLens<double>& lens,
@@ -250,7 +251,7 @@ GhostSurvey survey_ghosts(const optics::Lens& lens, const GhostSettings& setting
         survey.energy += ghost.light.energy;
         survey.polarised_energy += ghost.polarised_energy;
     }
-    survey.surfaces = surface_shares(scene, survey, settings);
+    survey.surfaces = surface_contributions(scene, survey, settings);
     return survey;
 }
 

@@ -39,8 +39,8 @@ struct Ghost {
     double polarised_energy = 0.0;  // with polarisation carried along the path, of unpolarised light; if asked for
 };
 
-/// What one surface has to do with the ghosts' light, as shares of all of it.
-struct SurfaceShare {
+/// What one surface has to do with the ghosts' light, as fractions of all of it.
+struct SurfaceContribution {
     int surface = 0;        // from 0; the number of surfaces stands for the sensor
     double involved = 0.0;  // of the ghosts that it reflects
     double perfect = 0.0;   // what is gone where this surface alone reflects nothing: light that it then passes makes
@@ -55,7 +55,7 @@ struct GhostSurvey {
     double polarised_energy = 0.0;
     GhostLight image;  // of the light itself
     double skipped_energy_bound = 0.0;
-    std::vector<SurfaceShare> surfaces;  // that whose coating takes away most first
+    std::vector<SurfaceContribution> surfaces;  // that whose coating takes away most first
 };
 
 /// The entrance pupil is the paraxial one, a disc that the light meets at `source_angle`. The same settings give the

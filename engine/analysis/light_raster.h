@@ -11,7 +11,7 @@ namespace lensproof::analysis {
 /// Square pixels, centred on the axis and turned upright as a camera does it: column u and row v, counted from the top
 /// left, lie about x = −(u − (width − 1)/2) pitch, y = (v − (height − 1)/2) pitch in lens space.
 ///
-/// A triangle's light is spread evenly over it, and each pixel has the share that it covers of it, exactly: where a map
+/// A triangle's light is spread evenly over it, and each pixel has the fraction that it covers, exactly: where a map
 /// folds and the triangle has no area, what it adds stays finite. What lies beyond the sensor is lost.
 ///
 /// A triangle costs as many steps as its sides cross pixels, whatever its area: kept are the differences from each

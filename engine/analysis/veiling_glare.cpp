@@ -88,35 +88,35 @@ double error_of_sum(const std::vector<Seen>& batches, const Residual& residual) 
     return std::sqrt(squares * n / (n - 1.0));
 }
 
-/// The share of the mean, and the standard error of such a ratio, to first order.
-GlareShare share_of(const std::vector<Seen>& batches, const Seen& total, Sums Seen::*which,
-                    std::initializer_list<Class> classes) {
+/// The fraction of the mean, and the standard error of such a ratio, to first order.
+GlareFraction fraction_of(const std::vector<Seen>& batches, const Seen& total, Sums Seen::*which,
+                          std::initializer_list<Class> classes) {
     const double whole = (total.*which)[all];
-    const double share = sum_of(total.*which, classes) / whole;
+    const double fraction = sum_of(total.*which, classes) / whole;
     const auto residual = [&](const Seen& batch) {
-        return sum_of(batch.*which, classes) - share * (batch.*which)[all];
+        return sum_of(batch.*which, classes) - fraction * (batch.*which)[all];
     };
-    return {share, error_of_sum(batches, residual) / whole};
+    return {fraction, error_of_sum(batches, residual) / whole};
 }
 
 PolarisedGlare polarised_glare(const std::vector<Seen>& batches, const Seen& total) {
-    const auto share = [&](std::initializer_list<Class> classes) {
-        return share_of(batches, total, &Seen::carried, classes);
+    const auto fraction = [&](std::initializer_list<Class> classes) {
+        return fraction_of(batches, total, &Seen::carried, classes);
     };
-    PolarisedGlare glare{.index = share({ghosts, barrel, blur}),
-                         .ghosts = share({ghosts}),
-                         .barrel = share({barrel}),
-                         .blur = share({blur}),
+    PolarisedGlare glare{.index = fraction({ghosts, barrel, blur}),
+                         .ghosts = fraction({ghosts}),
+                         .barrel = fraction({barrel}),
+                         .blur = fraction({blur}),
                          .difference = {}};
-    const double averaged = share_of(batches, total, &Seen::averaged, {ghosts, barrel, blur}).share;
+    const double averaged = fraction_of(batches, total, &Seen::averaged, {ghosts, barrel, blur}).fraction;
     const auto residual = [&](const Seen& batch) {
         const auto of = [&](const Sums& sums, double index, double whole) {
             return (sum_of(sums, {ghosts, barrel, blur}) - index * sums[all]) / whole;
         };
-        return of(batch.carried, glare.index.share, total.carried[all]) -
+        return of(batch.carried, glare.index.fraction, total.carried[all]) -
                of(batch.averaged, averaged, total.averaged[all]);
     };
-    glare.difference = {glare.index.share - averaged, error_of_sum(batches, residual)};
+    glare.difference = {glare.index.fraction - averaged, error_of_sum(batches, residual)};
     return glare;
 }
 
@@ -207,13 +207,13 @@ VeilingGlare veiling_glare(const optics::Lens& lens, const VeilingGlareSettings&
     if (!(total.averaged[all] > 0.0)) {
         return {.spot_angle = settings.spot_angle};
     }
-    const auto share = [&](std::initializer_list<Class> classes) {
-        return share_of(batches, total, &Seen::averaged, classes);
+    const auto fraction = [&](std::initializer_list<Class> classes) {
+        return fraction_of(batches, total, &Seen::averaged, classes);
     };
-    VeilingGlare glare{.index = share({ghosts, barrel, blur}),
-                       .ghosts = share({ghosts}),
-                       .barrel = share({barrel}),
-                       .blur = share({blur}),
+    VeilingGlare glare{.index = fraction({ghosts, barrel, blur}),
+                       .ghosts = fraction({ghosts}),
+                       .barrel = fraction({barrel}),
+                       .blur = fraction({blur}),
                        .spot_angle = settings.spot_angle,
                        .irradiance = paths.disc_area() * total.averaged[all] / static_cast<double>(settings.paths)};
     if (settings.polarised) {

@@ -27,9 +27,9 @@ struct VeilingGlareSettings {
     int threads = 0;
 };
 
-/// An irradiance's share of that of the even field, with its standard error.
-struct GlareShare {
-    double share = 0.0;
+/// An irradiance's fraction of that of the even field, with its standard error.
+struct GlareFraction {
+    double fraction = 0.0;
     double standard_error = 0.0;
 };
 
@@ -37,20 +37,20 @@ struct GlareShare {
 /// light is unpolarised, and so is what walls scatter. `difference` is that of the two indices; the same paths find
 /// both, so that its error is far below either's.
 struct PolarisedGlare {
-    GlareShare index;
-    GlareShare ghosts;
-    GlareShare barrel;
-    GlareShare blur;
-    GlareShare difference;
+    GlareFraction index;
+    GlareFraction ghosts;
+    GlareFraction barrel;
+    GlareFraction blur;
+    GlareFraction difference;
 };
 
 /// `index` is the sum of the three after it: what glass (and the sensor, where it is a mirror) reflected, what met
 /// walls, and what should have made the image beside the spot and reaches its middle by aberrations alone.
 struct VeilingGlare {
-    GlareShare index;
-    GlareShare ghosts;
-    GlareShare barrel;
-    GlareShare blur;
+    GlareFraction index;
+    GlareFraction ghosts;
+    GlareFraction barrel;
+    GlareFraction blur;
     double spot_angle = 0.0;  // as in the settings
     double irradiance = 0.0;  // of the even field of radiance 1, at the image's centre; 0 where no light gets there
     std::optional<PolarisedGlare> polarised{};

@@ -213,8 +213,9 @@ void check_aperture(const CheckedLens& checked, Findings& findings) {
         const std::size_t count = findings.size();
         compare(findings, "entrance-pupil", "the entrance pupil's diameter (mm)",
                 {data.entrance_pupil_diameter, *diameter, *diameter}, kFNumber, stop + 1);
-        const double share = data.entrance_pupil_diameter / *diameter;
-        if (findings.size() > count && share < 1.0 && share > kLeastClearAperture && is_clear_aperture(checked, stop)) {
+        const double fraction = data.entrance_pupil_diameter / *diameter;
+        if (findings.size() > count && fraction < 1.0 && fraction > kLeastClearAperture &&
+            is_clear_aperture(checked, stop)) {
             findings.back().severity = info;
             findings.back().message += "; it is the element's clear aperture, which both of its surfaces have";
         }

@@ -22,8 +22,8 @@ double rim_of(const Lens& lens, std::size_t i) {
     const std::size_t behind = i + 1 < lens.surfaces.size() ? i + 1 : i - 1;
     const double from = rim_of(lens, before);
     const double gap = lens.surfaces[behind].vertex_z - lens.surfaces[before].vertex_z;
-    const double share = gap > 0.0 ? (surface.vertex_z - lens.surfaces[before].vertex_z) / gap : 0.0;
-    return std::max(rim, from + std::clamp(share, 0.0, 1.0) * (rim_of(lens, behind) - from));
+    const double fraction = gap > 0.0 ? (surface.vertex_z - lens.surfaces[before].vertex_z) / gap : 0.0;
+    return std::max(rim, from + std::clamp(fraction, 0.0, 1.0) * (rim_of(lens, behind) - from));
 }
 
 double edge_z(const LensSurface& surface) {

@@ -37,7 +37,7 @@ struct TraceCoating {
     [[nodiscard]] constexpr bool is_bare() const { return layers.empty() && !reflectance && !is_mirror; }
 };
 
-/// The shares of a wave's power that a coated surface sends back and on; the layers keep the rest.
+/// A coated surface's reflectance and transmittance of power; the layers keep the rest.
 template <class T>
 struct CoatedPowers {
     T reflected;
@@ -255,9 +255,9 @@ constexpr bool is_beyond_critical(const T& n1, const T& n2, const T& cos_inciden
     return (far - near) * (far + near) + near * near * cos_incidence * cos_incidence <= T(0);
 }
 
-/// The shares of power for light that meets a surface between `n1` on the scene's side and `n2` on the sensor's, coming
-/// from either at an angle of cosine `cos_incidence` (in its own medium, above 0). Beyond the critical angle nothing is
-/// transmitted, and what layers without absorption reflect is 1. Without layers these are Fresnel's.
+/// Reflectance and transmittance for light that meets a surface between `n1` on the scene's side and `n2` on the
+/// sensor's, coming from either at an angle of cosine `cos_incidence` (in its own medium, above 0). Beyond the critical
+/// angle nothing is transmitted, and what layers without absorption reflect is 1. Without layers these are Fresnel's.
 template <class T, class Layers = TraceLayers<T>>
 constexpr PolarisedPowers<T> coating_powers(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
                                             const T& cos_incidence, bool from_scene_side) {

@@ -20,10 +20,10 @@ struct Deflection {
 /// With a density of θ^(−3/2) between the range's ends.
 Deflection drawn_deflection(const DeflectionRange& range, double number) {
     const double side = number < 0.5 ? -1.0 : 1.0;
-    const double share = std::abs(2.0 * number - 1.0);
+    const double fraction = std::abs(2.0 * number - 1.0);
     const double from = 1.0 / std::sqrt(range.smallest);
     const double width = from - 1.0 / std::sqrt(range.largest);
-    const double root = 1.0 / (from - share * width);
+    const double root = 1.0 / (from - fraction * width);
     return {.angle = side * root * root, .density = 0.25 / (width * root * root * root)};
 }
 
@@ -53,8 +53,8 @@ struct Turn {
 Turn drawn_turn(double reach, double number) {
     const double side = number < 0.5 ? -1.0 : 1.0;
     const double envelope = reach < 1.0 ? reach : 2.0 - 1.0 / reach;
-    const double share = std::abs(2.0 * number - 1.0) * envelope;
-    const double x = share < 1.0 ? share : 1.0 / (2.0 - share);
+    const double fraction = std::abs(2.0 * number - 1.0) * envelope;
+    const double x = fraction < 1.0 ? fraction : 1.0 / (2.0 - fraction);
     const double root = x > 0.0 ? std::sin(x) / std::min(x, 1.0) : 1.0;  // of sinc² over the envelope
     return {.sine = side * x / reach, .weight = root * root * envelope / sinc_squared_within(reach)};
 }
@@ -109,7 +109,7 @@ std::optional<DiffractedRay> diffracted(const StopPlane& stop, const EdgeZone& z
     return ray;
 }
 
-double diffracted_share(const StopPlane& stop, double angle) {
+double diffracted_fraction(const StopPlane& stop, double angle) {
     const double perimeter = stop.mask->perimeter() * stop.semi_diameter;
     const double area = stop.mask->area() * stop.semi_diameter * stop.semi_diameter;
     return perimeter / (pi * stop.wavenumber * area * angle);

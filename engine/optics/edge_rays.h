@@ -59,8 +59,8 @@ DiffractedRay diffracted_at_edge(const StopEdge& edge, double wavenumber, const 
 std::optional<DiffractedRay> diffracted(const StopPlane& stop, const EdgeZone& zone, const Vec2d& point,
                                         const Vec3<double>& direction, const std::array<double, 4>& numbers);
 
-/// The share of the light through an evenly lit opening that its edges deflect by more than `angle` (small, radians):
-/// P λ / (2π² A angle) with the opening's perimeter P and area A. What the light that goes straight on loses.
-double diffracted_share(const StopPlane& stop, double angle);
+/// The fraction of the light through an evenly lit opening that its edges deflect by more than `angle` (small,
+/// radians): P λ / (2π² A angle) with the opening's perimeter P and area A. What the light that goes straight on loses.
+double diffracted_fraction(const StopPlane& stop, double angle);
 
 }  // namespace lensproof::optics

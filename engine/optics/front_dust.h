@@ -16,7 +16,7 @@ struct TraceLens;
 struct FrontDust {
     std::shared_ptr<const ApertureTexture> covered;  // 0: clean, 1: wholly covered
     double semi_diameter = 0.0;                      // of the first surface, mm
-    double albedo = 0.0;                             // 0 to 1: the share that is scattered
+    double albedo = 0.0;                             // 0 to 1: the fraction that is scattered
     double through = 0.5;                            // 0 to 1: of that, on to the other side
 
     /// What a point of the first surface (lens space, mm) lets pass by, 0 to 1.

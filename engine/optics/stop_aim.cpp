@@ -87,9 +87,9 @@ std::optional<StopAim::Outside> StopAim::outside(const RayOrigin& origin, const 
     if (origin.is_far) {
         return Outside{.ray = *ray, .towards = -1.0 * origin.at};
     }
-    const Vec3d way = origin.at - ray->origin;
-    const double distance2 = dot(way, way);
-    return Outside{.ray = *ray, .towards = (1.0 / std::sqrt(distance2)) * way, .distance2 = distance2};
+    const Vec3d reach = origin.at - ray->origin;
+    const double distance2 = dot(reach, reach);
+    return Outside{.ray = *ray, .towards = (1.0 / std::sqrt(distance2)) * reach, .distance2 = distance2};
 }
 
 Vec2d StopAim::first_guess(const RayOrigin& origin, const Vec2d& point) const {
@@ -150,15 +150,15 @@ std::optional<AimedRay> StopAim::aim(const RayOrigin& origin, const Vec2d& point
         // The whole step, or a part of it that comes nearer.
         const Vec2d step{-cross(missed, by_y) / determinant, -cross(by_x, missed) / determinant};
         std::optional<Outside> there;
-        double share = 1.0;
-        for (; share > 1e-3; share *= 0.5) {
-            there = outside(origin, point, cosines + share * step);
+        double fraction = 1.0;
+        for (; fraction > 1e-3; fraction *= 0.5) {
+            there = outside(origin, point, cosines + fraction * step);
             if (there && length(there->ray.direction - there->towards) < error) {
                 break;
             }
             there.reset();
         }
-        cosines = cosines + share * step;
+        cosines = cosines + fraction * step;
         here = there;
     }
     return std::nullopt;

@@ -23,12 +23,12 @@ std::vector<StopMask::NearEdge> pieces_near(const std::vector<EdgePiece>& pieces
     std::vector<StopMask::NearEdge> edges;
     for (const EdgePiece& piece : pieces) {
         const double side = piece.piece_length();
-        const double share = dot(point - piece.from, piece.to - piece.from) / (side * side);
-        if (!(share >= 0.0 && share < 1.0)) {
+        const double fraction = dot(point - piece.from, piece.to - piece.from) / (side * side);
+        if (!(fraction >= 0.0 && fraction < 1.0)) {
             continue;
         }
-        const Vec2d outward = piece.outward(share);
-        const double distance = dot(piece.from + share * (piece.to - piece.from) - point, outward);
+        const Vec2d outward = piece.outward(fraction);
+        const double distance = dot(piece.from + fraction * (piece.to - piece.from) - point, outward);
         if (distance >= 0.0 && distance < width) {
             const double turn = cross(piece.outward_from, piece.outward_to);
             edges.push_back({.distance = distance,
@@ -115,19 +115,19 @@ std::vector<StopMask::NearEdge> StopMask::edges_near(double x, double y, double 
     return edges;
 }
 
-StopMask::EdgePoint StopMask::edge_at(double share) const {
+StopMask::EdgePoint StopMask::edge_at(double fraction) const {
     if (pieces_) {
-        const double along = share * perimeter();
+        const double along = fraction * perimeter();
         const auto after = std::ranges::upper_bound(*pieces_, along, {}, &EdgePiece::before);
         const EdgePiece& piece = *std::prev(after);
         const double part = std::min((along - piece.before) / piece.piece_length(), 1.0);
         return {piece.from + part * (piece.to - piece.from), piece.outward(part), piece.edge_length};
     }
     if (edges_.empty()) {
-        const Vec2d outward{std::cos(2.0 * std::numbers::pi * share), std::sin(2.0 * std::numbers::pi * share)};
+        const Vec2d outward{std::cos(2.0 * std::numbers::pi * fraction), std::sin(2.0 * std::numbers::pi * fraction)};
         return {outward, outward, kInfinity};
     }
-    const double at = share * static_cast<double>(edges_.size());
+    const double at = fraction * static_cast<double>(edges_.size());
     const std::size_t index = std::min(edges_.size() - 1, static_cast<std::size_t>(at));
     const double asideedge = 2.0 * (at - static_cast<double>(index)) - 1.0;
     const Edge& edge = edges_[index];

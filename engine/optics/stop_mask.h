@@ -109,8 +109,8 @@ class StopMask {
         double length = 0.0;  // of the edge, as above
     };
 
-    /// The point at this share, 0 to 1, of the edges' length: even shares lie evenly along them. Not without edges.
-    [[nodiscard]] EdgePoint edge_at(double share) const;
+    /// The point at this fraction of the edges' length: even fractions lie evenly along them. Not without edges.
+    [[nodiscard]] EdgePoint edge_at(double fraction) const;
 
     /// The same mask, which knows the edges of its texture too: they are looked for (texture_edges.h).
     [[nodiscard]] StopMask with_edges() const;

@@ -98,10 +98,10 @@ class Crossings {
         const bool is_down = crossing % 2 != 0;
         const double here = lattice_.brightness(column, row);
         const double there = lattice_.brightness(is_down ? column : column + 1, is_down ? row + 1 : row);
-        const double share = (kHalf - here) / (there - here);
+        const double fraction = (kHalf - here) / (there - here);
         const Vec2d from = lattice_.at(column, row);
         const Vec2d to = lattice_.at(is_down ? column : column + 1, is_down ? row + 1 : row);
-        return from + share * (to - from);
+        return from + fraction * (to - from);
     }
 
     void cross_cell(int column, int row) {
@@ -135,8 +135,8 @@ class Crossings {
 double distance_to(const Vec2d& point, const Vec2d& from, const Vec2d& to) {
     const Vec2d side = to - from;
     const double long_squared = dot(side, side);
-    const double share = long_squared > 0.0 ? std::clamp(dot(point - from, side) / long_squared, 0.0, 1.0) : 0.0;
-    return length(point - from - share * side);
+    const double fraction = long_squared > 0.0 ? std::clamp(dot(point - from, side) / long_squared, 0.0, 1.0) : 0.0;
+    return length(point - from - fraction * side);
 }
 
 /// Marks the corners of a polygon between two that are known.
@@ -266,8 +266,8 @@ bool is_crisp(const Lattice& lattice, const Side& side) {
 
 }  // namespace
 
-Vec2d EdgePiece::outward(double share) const {
-    const Vec2d between = (1.0 - share) * outward_from + share * outward_to;
+Vec2d EdgePiece::outward(double fraction) const {
+    const Vec2d between = (1.0 - fraction) * outward_from + fraction * outward_to;
     return (1.0 / length(between)) * between;
 }
 

@@ -16,8 +16,8 @@ struct EdgePiece {
     double edge_length = 0.0;  // of the straight edge that it is; infinite of a curve
     double before = 0.0;       // the length of all pieces before it
 
-    /// At a share, 0 to 1, of its length.
-    [[nodiscard]] Vec2d outward(double share) const;
+    /// At a fraction of its length.
+    [[nodiscard]] Vec2d outward(double fraction) const;
     [[nodiscard]] double piece_length() const { return length(to - from); }
 };
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/order_statistics.h"
 #include "engine/polynomial/polynomial_fit.h"
 #include "engine/polynomial/ray_samples.h"
 
@@ -41,10 +42,8 @@ PolynomialError measured_error(const PolynomialLens& polynomial, const std::vect
         return error;
     }
     const auto rays = static_cast<double>(misses.size());
-    const auto kept = static_cast<std::ptrdiff_t>(0.999 * (rays - 1.0));
-    std::ranges::nth_element(misses, misses.begin() + kept);
     error = {.rms_um = std::sqrt(squares / rays),
-             .bound_um = kSpare * misses[static_cast<std::size_t>(kept)],
+             .bound_um = kSpare * quantile(misses, 0.999),
              .entry_rms_um = std::sqrt(beside / rays)};
     double sum_exact = 0.0;
     double sum_found = 0.0;

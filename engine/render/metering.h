@@ -7,7 +7,7 @@
 
 namespace lensproof::render {
 
-/// Middle grey: the share of saturation that a metered picture's log-average brightness comes to (E. Reinhard, M.
+/// Middle grey: the fraction of saturation that a metered picture's log-average brightness comes to (E. Reinhard, M.
 /// Stark, P. Shirley, J. Ferwerda, "Photographic tone reproduction for digital images", SIGGRAPH 2002, their key a).
 inline constexpr double kMiddleGrey = 0.18;
 

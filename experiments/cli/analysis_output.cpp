@@ -284,19 +284,19 @@ std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSett
 
 Json veiling_glare_json(const analysis::VeilingGlare& glare) {
     constexpr double kPercent = 0.01;
-    Json json{{"index_percent", glare.index.share / kPercent},
+    Json json{{"index_percent", glare.index.fraction / kPercent},
               {"standard_error_percent", glare.index.standard_error / kPercent},
-              {"ghosts_percent", glare.ghosts.share / kPercent},
-              {"barrel_percent", glare.barrel.share / kPercent},
-              {"blur_percent", glare.blur.share / kPercent},
+              {"ghosts_percent", glare.ghosts.fraction / kPercent},
+              {"barrel_percent", glare.barrel.fraction / kPercent},
+              {"blur_percent", glare.blur.fraction / kPercent},
               {"spot_diameter_deg", 2.0 * glare.spot_angle / kDegree}};
     if (const auto& polarised = glare.polarised) {
-        json["polarised"] = {{"index_percent", polarised->index.share / kPercent},
+        json["polarised"] = {{"index_percent", polarised->index.fraction / kPercent},
                              {"standard_error_percent", polarised->index.standard_error / kPercent},
-                             {"ghosts_percent", polarised->ghosts.share / kPercent},
-                             {"barrel_percent", polarised->barrel.share / kPercent},
-                             {"blur_percent", polarised->blur.share / kPercent},
-                             {"difference_percent", polarised->difference.share / kPercent},
+                             {"ghosts_percent", polarised->ghosts.fraction / kPercent},
+                             {"barrel_percent", polarised->barrel.fraction / kPercent},
+                             {"blur_percent", polarised->blur.fraction / kPercent},
+                             {"difference_percent", polarised->difference.fraction / kPercent},
                              {"difference_standard_error_percent", polarised->difference.standard_error / kPercent}};
     }
     return json;
@@ -306,15 +306,15 @@ std::string veiling_glare_text(const analysis::VeilingGlare& glare) {
     std::string text = fmt::format(
         "Veiling glare index: {:.3f} +- {:.3f} % (ghosts {:.3f}, barrel {:.3f}, blur {:.3f}), of a black "
         "spot of {:.2f} deg at the middle of an even half space\n",
-        100.0 * glare.index.share, 100.0 * glare.index.standard_error, 100.0 * glare.ghosts.share,
-        100.0 * glare.barrel.share, 100.0 * glare.blur.share, 2.0 * glare.spot_angle / kDegree);
+        100.0 * glare.index.fraction, 100.0 * glare.index.standard_error, 100.0 * glare.ghosts.fraction,
+        100.0 * glare.barrel.fraction, 100.0 * glare.blur.fraction, 2.0 * glare.spot_angle / kDegree);
     if (const auto& polarised = glare.polarised) {
         text += fmt::format(
             "With polarisation carried along its paths: {:.3f} %, that is {:+.4f} +- {:.4f} % (ghosts {:.3f}, barrel "
             "{:.3f}, blur {:.3f})\n",
-            100.0 * polarised->index.share, 100.0 * polarised->difference.share,
-            100.0 * polarised->difference.standard_error, 100.0 * polarised->ghosts.share,
-            100.0 * polarised->barrel.share, 100.0 * polarised->blur.share);
+            100.0 * polarised->index.fraction, 100.0 * polarised->difference.fraction,
+            100.0 * polarised->difference.standard_error, 100.0 * polarised->ghosts.fraction,
+            100.0 * polarised->barrel.fraction, 100.0 * polarised->blur.fraction);
     }
     return text;
 }

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 #include "engine/base/write_file.h"
 #include "engine/formats/image/image.h"
 #include "experiments/draw/analysis_plots.h"
@@ -24,7 +24,7 @@ double nearly_largest(const formats::Image& values) {
     for (const float value : values.pixels) {
         magnitudes.push_back(std::abs(value));
     }
-    return static_cast<double>(calibration::quantile(magnitudes, 0.999));
+    return static_cast<double>(quantile(magnitudes, 0.999));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <iterator>
 
-#include "calibration/statistics/order_statistics.h"
+#include "engine/base/order_statistics.h"
 #include "experiments/cli/compare_maps.h"
 #include "experiments/cli/picture_measures.h"
 #include "experiments/draw/report/html_text.h"
@@ -28,7 +28,7 @@ constexpr const char* kSubject = "pictures";
 /// What brings a picture of any scale to where an eye wants it: 99 of 100 values to 0.8 at most.
 double shown_gain(const PageSubject& a) {
     std::vector<float> values = a.image.pixels;
-    const auto bright = static_cast<double>(calibration::quantile(values, 0.99));
+    const auto bright = static_cast<double>(quantile(values, 0.99));
     return a.is_high_range && bright > 0.0 ? 0.8 / bright : 1.0;
 }
 

@@ -55,7 +55,7 @@ Json spot_json(const LightSpot& spot, const formats::Image& picture) {
               {"diameter_px", estimate_json(spot.diameter_px)},
               {"elongation", estimate_json(spot.elongation)},
               {"angle_deg", estimate_json(spot.angle_deg)},
-              {"clipped_share", spot.clipped_share}};
+              {"clipped_share", spot.clipped_fraction}};
     for (std::size_t c = 0; c < spot.light.size(); ++c) {
         json["light"][picture.channels[c]] = estimate_json(spot.light[c]);
     }
@@ -94,10 +94,10 @@ std::vector<findings::Fact> facts_of(const SpotPair& pair, const std::string& na
                              with_error(pair.colour_ev[c], "EV, B against A")});
         }
     }
-    if (const double clipped = std::max(pair.a.clipped_share, pair.b.clipped_share); clipped > 0.0) {
+    if (const double clipped = std::max(pair.a.clipped_fraction, pair.b.clipped_fraction); clipped > 0.0) {
         facts.push_back(
             {name + ", clipped", fmt::format("{:.2g} % of its pixels in A, {:.2g} % in B: no light or colour to tell",
-                                             100.0 * pair.a.clipped_share, 100.0 * pair.b.clipped_share)});
+                                             100.0 * pair.a.clipped_fraction, 100.0 * pair.b.clipped_fraction)});
     }
     return facts;
 }

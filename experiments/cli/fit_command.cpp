@@ -27,14 +27,15 @@ struct FitOptions {
 };
 
 /// "0.80 gap_4_mm − 0.60 gap_7_mm".
-std::string shares_text(const calibration::OpenCombination& open) {
-    if (open.shares.size() == 1) {
-        return open.shares.front().first;
+std::string combination_text(const calibration::OpenCombination& open) {
+    if (open.direction.size() == 1) {
+        return open.direction.front().first;
     }
     std::string text;
-    for (const auto& [name, share] : open.shares) {
-        text += fmt::format("{}{:.2f} {}", text.empty() ? (share < 0.0 ? "−" : "") : (share < 0.0 ? " − " : " + "),
-                            std::abs(share), name);
+    for (const auto& [name, component] : open.direction) {
+        text +=
+            fmt::format("{}{:.2f} {}", text.empty() ? (component < 0.0 ? "−" : "") : (component < 0.0 ? " − " : " + "),
+                        std::abs(component), name);
     }
     return text;
 }
@@ -51,8 +52,8 @@ void print_parameters(const calibration::LensExplanation& found) {
 void print_undetermined(const calibration::LensExplanation& found) {
     std::string untouched;
     for (const calibration::OpenCombination& open : found.undetermined) {
-        if (open.shares.size() == 1) {
-            untouched += (untouched.empty() ? "" : ", ") + open.shares.front().first;
+        if (open.direction.size() == 1) {
+            untouched += (untouched.empty() ? "" : ", ") + open.direction.front().first;
         }
     }
     if (!untouched.empty()) {
@@ -60,16 +61,17 @@ void print_undetermined(const calibration::LensExplanation& found) {
     }
     bool is_first = true;
     for (const calibration::OpenCombination& open : found.undetermined) {
-        if (open.shares.size() > 1) {
+        if (open.direction.size() > 1) {
             if (std::exchange(is_first, false)) {
                 print("\nThey cannot tell these apart, changed together by so much (in tolerances):\n");
             }
-            print("  ± {:<5.2f} of {}\n", open.standard_error, shares_text(open));
+            print("  ± {:<5.2f} of {}\n", open.standard_error, combination_text(open));
         }
     }
     if (found.suggestion) {
         print("A picture that would tell more: {}; ± {:.2f} of {} would become ± {:.2f}.\n", found.suggestion->picture,
-              found.suggestion->about.standard_error, shares_text(found.suggestion->about), found.suggestion->with_it);
+              found.suggestion->about.standard_error, combination_text(found.suggestion->about),
+              found.suggestion->with_it);
     }
 }
 
@@ -93,11 +95,11 @@ void print_explanation(const std::string& lens, const calibration::LensExplanati
 }
 
 Json open_json(const calibration::OpenCombination& open) {
-    Json shares = Json::object();
-    for (const auto& [name, share] : open.shares) {
-        shares[name] = share;
+    Json direction = Json::object();
+    for (const auto& [name, component] : open.direction) {
+        direction[name] = component;
     }
-    return Json{{"combination", shares}, {"standard_error", open.standard_error}};
+    return Json{{"combination", direction}, {"standard_error", open.standard_error}};
 }
 
 Json explanation_json(const FitOptions& options, const calibration::LensExplanation& found) {

@@ -136,11 +136,12 @@ Json survey_json(const GhostsOptions& options, const optics::Lens& lens, const a
         ghosts.push_back(ghost_json(lens, settings, survey.ghosts[i]));
     }
     Json surfaces = Json::list();
-    for (const analysis::SurfaceShare& share : survey.surfaces) {
-        surfaces.push_back({{"surface", surface_json(lens, share.surface)},
-                            {"share", share.involved},
-                            {"gone_if_perfect", share.perfect},
-                            {"gone_if_mgf2", share.quarter_wave ? Json(*share.quarter_wave) : Json(nullptr)}});
+    for (const analysis::SurfaceContribution& contribution : survey.surfaces) {
+        surfaces.push_back(
+            {{"surface", surface_json(lens, contribution.surface)},
+             {"share", contribution.involved},
+             {"gone_if_perfect", contribution.perfect},
+             {"gone_if_mgf2", contribution.quarter_wave ? Json(*contribution.quarter_wave) : Json(nullptr)}});
     }
     return {{"lens", lens.id},
             {"findings", findings_json(lens.findings)},
@@ -191,11 +192,11 @@ std::string survey_text(const GhostsOptions& options, const optics::Lens& lens, 
     }
     text += "\nWhich surface to coat: what of the ghosts' light goes with it\n";
     text += fmt::format("{:>14}{:>11}{:>14}{:>14}\n", "surface", "involved", "perfectly", "MgF2");
-    for (const analysis::SurfaceShare& share : survey.surfaces) {
-        text +=
-            fmt::format("{:>14}{:>9.1f} %{:>12.1f} %{:>14}\n", path_text(lens, {share.surface}), 100.0 * share.involved,
-                        100.0 * share.perfect,
-                        share.quarter_wave ? fmt::format("{:.1f} %", 100.0 * *share.quarter_wave) : std::string("-"));
+    for (const analysis::SurfaceContribution& contribution : survey.surfaces) {
+        text += fmt::format(
+            "{:>14}{:>9.1f} %{:>12.1f} %{:>14}\n", path_text(lens, {contribution.surface}),
+            100.0 * contribution.involved, 100.0 * contribution.perfect,
+            contribution.quarter_wave ? fmt::format("{:.1f} %", 100.0 * *contribution.quarter_wave) : std::string("-"));
     }
     return text;
 }

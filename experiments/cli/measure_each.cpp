@@ -5,9 +5,9 @@
 #include <optional>
 #include <set>
 
-#include "calibration/statistics/order_statistics.h"
 #include "engine/base/csv.h"
 #include "engine/base/input_error.h"
+#include "engine/base/order_statistics.h"
 #include "experiments/cli/measure_parts.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/terminal.h"
@@ -26,21 +26,24 @@ struct OwnResult {
 };
 
 // What the summary has of a profile, a pair of columns each: where it has been measured furthest out.
-std::vector<std::string> summarised_curves(const std::string& channel) {
-    return {kQuantities.distortion.key(),
-            kQuantities.vignetting_ev.key(channel),
-            kQuantities.chromatic_shift.key("R"),
-            kQuantities.chromatic_shift.key("B"),
-            kQuantities.tangential_mtf50.key(channel),
-            kQuantities.sagittal_mtf50.key(channel)};
+struct SummarisedCurve {
+    std::string key;
+    const char* column;  // without the picture's main channel, which differs from picture to picture
+};
+
+std::vector<SummarisedCurve> summarised_curves(const std::string& channel) {
+    return {{kQuantities.distortion.key(), "distortion_percent"},
+            {kQuantities.vignetting_ev.key(channel), "vignetting_ev"},
+            {kQuantities.chromatic_shift.key("R"), "chromatic_shift_R_px"},
+            {kQuantities.chromatic_shift.key("B"), "chromatic_shift_B_px"},
+            {kQuantities.tangential_mtf50.key(channel), "mtf50_tangential_cycles_per_px"},
+            {kQuantities.sagittal_mtf50.key(channel), "mtf50_sagittal_cycles_per_px"}};
 }
 
-// The columns; a curve's of the picture's main channel without its name, which differs from picture to picture.
 std::string summary_header() {
     std::string header = "image,measured,reason,edges,mtf50_median_cycles_per_px";
-    for (const char* curve : {"distortion_percent", "vignetting_ev", "chromatic_shift_R_px", "chromatic_shift_B_px",
-                              "mtf50_tangential_cycles_per_px", "mtf50_sagittal_cycles_per_px"}) {
-        header += fmt::format(",{0},{0}_at_image_height", curve);
+    for (const SummarisedCurve& curve : summarised_curves("")) {
+        header += fmt::format(",{0},{0}_at_image_height", curve.column);
     }
     return header + "\n";
 }
@@ -67,18 +70,18 @@ MedianSharpness median_sharpness(const calibration::Profile& profile) {
             }
         }
     }
-    return {values.size(), values.empty() ? std::nullopt : std::optional(calibration::median(values))};
+    return {values.size(), values.empty() ? std::nullopt : std::optional(median(values))};
 }
 
 std::string summary_row(const OwnResult& own) {
     std::string row = fmt::format("{},{},{}", csv_cell(own.image), own.profile ? "yes" : "no", csv_cell(own.reason));
     if (!own.profile) {
-        return row + std::string(14, ',') + "\n";
+        return row + std::string(2 + 2 * summarised_curves("").size(), ',') + "\n";
     }
     const auto [edges, mtf50] = median_sharpness(*own.profile);
     row += fmt::format(",{},{}", edges, mtf50 ? fmt::format("{:.5f}", *mtf50) : "");
-    for (const std::string& key : summarised_curves(main_channel(*own.profile))) {
-        const calibration::Curve* curve = find_curve(*own.profile, key);
+    for (const SummarisedCurve& summarised : summarised_curves(main_channel(*own.profile))) {
+        const calibration::Curve* curve = find_curve(*own.profile, summarised.key);
         const bool is_there = curve != nullptr && !curve->image_height.empty();
         const double height = is_there ? std::min(curve->covered_image_height, curve->image_height.back()) : 0.0;
         const auto value = is_there ? calibration::sample(*curve, height) : std::nullopt;

@@ -102,13 +102,13 @@ Json audit_json(const render::PreparedScene& scene, const RenderJobOptions& opti
     constexpr std::uint32_t kPaths = 1U << 19U;  // of a half, 0.07 %
     const render::EnergyAudit audit = said_of_scene(options, [&] { return scene.audit(options.common.seed, kPaths); });
     Json json = {{"light_in_w_per_nm", audit.light_in}};
-    for (std::size_t i = 0; i < audit.shares.size(); ++i) {
-        const auto& [share, error] = audit.shares[i];
+    for (std::size_t i = 0; i < audit.fractions.size(); ++i) {
+        const auto& [fraction, error] = audit.fractions[i];
         const std::string& name = render::fate_names()[i];
-        json[name + "_percent"] = 100.0 * share;
+        json[name + "_percent"] = 100.0 * fraction;
         json[name + "_standard_error_percent"] = 100.0 * error;
         if (prints_text(options.common)) {
-            print("light that comes in, {:<8} {:8.3f} ± {:.3f} %\n", name, 100.0 * share, 100.0 * error);
+            print("light that comes in, {:<8} {:8.3f} ± {:.3f} %\n", name, 100.0 * fraction, 100.0 * error);
         }
     }
     return json;

@@ -28,7 +28,7 @@
 #include "experiments/runner/kept_steps.h"
 #include "experiments/runner/report_content.h"
 #include "experiments/runner/report_index.h"
-#include "experiments/runner/step_share.h"
+#include "experiments/runner/step_shard.h"
 
 namespace lensproof::cli {
 
@@ -152,39 +152,39 @@ std::runtime_error ended_early(const findings::Steps& steps, const std::filesyst
 }
 
 /// Does a part of the steps, for a run that finds them kept, and writes no report.
-int run_share(const RunOptions& options, const runner::Experiment& experiment, const findings::RunSettings& settings,
+int run_shard(const RunOptions& options, const runner::Experiment& experiment, const findings::RunSettings& settings,
               const std::filesystem::path& kept) {
     const Shard shard = read_shard(options.shard);
     check_output_name(kept / "step");
     check_json_name(options.common);
-    runner::StepShare share;
+    runner::StepShard done;
     try {
         const Interruption interruption;
         StepProgress progress(options.common.quiet, settings.steps);
-        share = runner::carry_out_share(experiment, shard.index, shard.count, settings, std::ref(progress));
+        done = runner::carry_out_shard(experiment, shard.index, shard.count, settings, std::ref(progress));
     } catch (const Interrupted&) {
         throw ended_early(settings.steps, kept);
     }
-    say_failures(share.failures);
+    say_failures(done.failures);
     if (prints_text(options.common)) {
         print("share {} of the steps: {} done, {} kept before, in {}\n", options.shard, settings.steps.made(),
               settings.steps.kept(), kept.string());
     }
-    if (!share.left.empty() && !options.common.quiet) {
+    if (!done.left.empty() && !options.common.quiet) {
         show_message(
             fmt::format("lensproof: left to the run that writes the report, which finds their steps as it goes: {}\n",
-                        fmt::join(share.left, ", ")));
+                        fmt::join(done.left, ", ")));
     }
     Json failures = Json::list();
-    for (const findings::Failure& failure : share.failures) {
+    for (const findings::Failure& failure : done.failures) {
         failures.push_back({{"step", failure.study}, {"message", failure.message}});
     }
     write_json_result(options.common, {{"share", options.shard},
-                                       {"steps", share.steps},
+                                       {"steps", done.steps},
                                        {"made", settings.steps.made()},
                                        {"failures", std::move(failures)},
-                                       {"left", share.left}});
-    return exit_status(kDone, share.failures);
+                                       {"left", done.left}});
+    return exit_status(kDone, done.failures);
 }
 
 /// The page of the reports that lie beside this one: of the usual folder, or where there is one already.
@@ -214,7 +214,7 @@ int run(const RunOptions& options) {
         return tell_plan(options, experiment, settings);
     }
     if (!options.shard.empty()) {
-        return run_share(options, experiment, settings, kept);
+        return run_shard(options, experiment, settings, kept);
     }
     const std::optional<runner::EarlierReport> earlier =
         options.against.empty() ? std::nullopt : std::optional(runner::read_earlier_report(options.against));

@@ -54,14 +54,14 @@ void check_rays(const optics::Lens& lens, const GivenRays& rays) {
 
 /// In the precision asked for.
 template <class Visit>
-void trace_rows(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Way& way,
+void trace_rows(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const TraceTask& task,
                 const Visit& visit) {
     if (options.precision == "float") {
-        trace_all<float>(lens, rays, way, visit);
+        trace_all<float>(lens, rays, task, visit);
     } else if (options.precision == "extended") {
-        trace_all<long double>(lens, rays, way, visit);
+        trace_all<long double>(lens, rays, task, visit);
     } else {
-        trace_all<double>(lens, rays, way, visit);
+        trace_all<double>(lens, rays, task, visit);
     }
 }
 
@@ -74,17 +74,18 @@ struct MeasuredError {
     [[nodiscard]] double bound_um() const { return optics::float_error_bound_um(system_length_mm); }
 };
 
-MeasuredError measure_float(const optics::Lens& lens, const GivenRays& rays, const optics::RayWay<double>& way) {
-    MeasuredError measured{.reverse = way.direction == optics::Direction::reverse,
+MeasuredError measure_float(const optics::Lens& lens, const GivenRays& rays, const optics::RayCourse<double>& course) {
+    MeasuredError measured{.reverse = course.direction == optics::Direction::reverse,
                            .system_length_mm = std::abs(lens.image_z - lens.surfaces.front().vertex_z)};
     LensAtWavelengths<float> in_float(lens);
     LensAtWavelengths<double> in_double(lens);
     rays.for_each([&](const GivenRay& given) {
         const optics::TraceLens<float>& narrow = in_float.at(given.wavelength_nm);
         const optics::TraceLens<double>& wide = in_double.at(given.wavelength_nm);
-        measured.error.add(way.reflections.empty()
-                               ? optics::trace_in_float(narrow, wide, given.ray, way.direction, way.rims)
-                               : optics::trace_ghost_in_float(narrow, wide, way.reflections, given.ray, way.rims));
+        measured.error.add(
+            course.reflections.empty()
+                ? optics::trace_in_float(narrow, wide, given.ray, course.direction, course.rims)
+                : optics::trace_ghost_in_float(narrow, wide, course.reflections, given.ray, course.rims));
     });
     return measured;
 }
@@ -132,13 +133,13 @@ int run_trace(const TraceOptions& options) {
         optics::require_no_thin_elements(lens, options.polarised ? "polarised light" : "a ghost");
     }
     const std::shared_ptr<device::SharedDevice> device = shared_device(options.device, OnRefusal::end);
-    Way way{.along = {.direction = options.reverse ? optics::Direction::reverse : optics::Direction::forward,
-                      .rims = options.no_clip ? optics::Rims::follow : optics::Rims::clip},
-            .polarised = options.polarised,
-            .device = device.get()};
+    TraceTask task{.along = {.direction = options.reverse ? optics::Direction::reverse : optics::Direction::forward,
+                             .rims = options.no_clip ? optics::Rims::follow : optics::Rims::clip},
+                   .polarised = options.polarised,
+                   .device = device.get()};
     if (!options.sequence.empty()) {
-        way.along.reflections = parse_sequence(options.sequence, lens, options.mirrors);
-        way.along.mirrors = stray_mirrors(options.mirrors);
+        task.along.reflections = parse_sequence(options.sequence, lens, options.mirrors);
+        task.along.mirrors = stray_mirrors(options.mirrors);
     }
     if (device && options.precision == "extended") {
         device->refuse("no GPU has extended precision");
@@ -147,7 +148,7 @@ int run_trace(const TraceOptions& options) {
     check_rays(lens, rays);
     const auto csv_to = [&](const auto& put) {
         put(kTraceHeader + std::string(options.polarised ? kPolarisedHeader : "") + "\n");
-        trace_rows(lens, rays, options, way, [&](const auto& row) { put(csv_of(row)); });
+        trace_rows(lens, rays, options, task, [&](const auto& row) { put(csv_of(row)); });
     };
     if (!options.output_file.empty()) {
         write_stream(options.output_file,
@@ -157,14 +158,14 @@ int run_trace(const TraceOptions& options) {
     }
     Json result{{"lens", lens.id}, {"findings", findings_json(lens.findings)}, {"rows", Json::list()}};
     if (options.precision == "float") {
-        const MeasuredError measured = measure_float(lens, rays, way.along);
+        const MeasuredError measured = measure_float(lens, rays, task.along);
         if (!options.common.quiet) {
             print_error(measured);
         }
         result["float_error"] = error_json(measured);
     }
     write_json_result(options.common, result, "rows", [&](const auto& visit) {
-        trace_rows(lens, rays, options, way, [&](const auto& row) { visit(json_of(row)); });
+        trace_rows(lens, rays, options, task, [&](const auto& row) { visit(json_of(row)); });
     });
     return kDone;
 }

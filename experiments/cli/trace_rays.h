@@ -11,7 +11,7 @@
 
 #include "engine/optics/device/device_trace.h"
 #include "engine/optics/lens.h"
-#include "engine/optics/ray_way.h"
+#include "engine/optics/ray_course.h"
 #include "experiments/cli/ghost_options.h"
 #include "experiments/cli/given_rays.h"
 #include "experiments/cli/trace_rows.h"
@@ -19,8 +19,8 @@
 namespace lensproof::cli {
 
 /// How rays are traced.
-struct Way {
-    optics::RayWay<double> along;
+struct TraceTask {
+    optics::RayCourse<double> along;
     bool polarised = false;                  // rows say what becomes of polarised light too
     device::SharedDevice* device = nullptr;  // that traces, or null
 };
@@ -55,11 +55,11 @@ Vec3<T> travelling(const Vec3<T>& direction, const T& index) {
 }
 
 template <class T>
-optics::RayWay<T> way_in(const optics::RayWay<double>& way) {
-    return {.direction = way.direction,
-            .rims = way.rims,
-            .reflections = way.reflections,
-            .mirrors = {static_cast<T>(way.mirrors.sensor), static_cast<T>(way.mirrors.blades)}};
+optics::RayCourse<T> course_in(const optics::RayCourse<double>& course) {
+    return {.direction = course.direction,
+            .rims = course.rims,
+            .reflections = course.reflections,
+            .mirrors = {static_cast<T>(course.mirrors.sensor), static_cast<T>(course.mirrors.blades)}};
 }
 
 template <class T>
@@ -78,11 +78,11 @@ template <class T, class Visit>
 class RayRows {
   public:
     /// All outlive it.
-    RayRows(const optics::TraceLens<T>& lens, const GivenRay& given, const Ray<T>& ray, const Way& way,
+    RayRows(const optics::TraceLens<T>& lens, const GivenRay& given, const Ray<T>& ray, const TraceTask& task,
             const Visit& visit)
-        : lens_(lens), given_(given), way_(way), visit_(visit) {
-        if (way.polarised) {
-            polarised_.emplace(lens, way.along.reflections, ray.direction, way.along.direction, way.along.rims);
+        : lens_(lens), given_(given), task_(task), visit_(visit) {
+        if (task.polarised) {
+            polarised_.emplace(lens, task.along.reflections, ray.direction, task.along.direction, task.along.rims);
         }
     }
 
@@ -104,8 +104,8 @@ class RayRows {
 
     void end(const optics::TracedRay<T>& traced) {
         const bool has_ended = !optics::gets_through(traced.status) ||
-                               (way_.along.rims == optics::Rims::clip && traced.status != optics::RayStatus::ok);
-        if (has_ended || way_.along.direction == optics::Direction::reverse) {
+                               (task_.along.rims == optics::Rims::clip && traced.status != optics::RayStatus::ok);
+        if (has_ended || task_.along.direction == optics::Direction::reverse) {
             return;
         }
         if (traced.ray.direction.z > T(0)) {
@@ -131,7 +131,7 @@ class RayRows {
 
     const optics::TraceLens<T>& lens_;
     const GivenRay& given_;
-    const Way& way_;
+    const TraceTask& task_;
     const Visit& visit_;
     std::optional<optics::PolarisedEvents<T>> polarised_;
 };
@@ -141,29 +141,29 @@ template <class T, class Visit>
 class RayTracing {
   public:
     /// All outlive it.
-    RayTracing(const optics::Lens& lens, const Way& way, const Visit& visit)
-        : lenses_(lens), way_(way), along_(way_in<T>(way.along)), visit_(visit) {}
+    RayTracing(const optics::Lens& lens, const TraceTask& task, const Visit& visit)
+        : lenses_(lens), task_(task), along_(course_in<T>(task.along)), visit_(visit) {}
 
     void trace(const GivenRay& given) {
         const optics::TraceLens<T>& lens = lenses_.at(given.wavelength_nm);
         const Ray<T> ray = ray_in(lens, given, along_.direction);
-        RayRows<T, Visit> rows(lens, given, ray, way_, visit_);
+        RayRows<T, Visit> rows(lens, given, ray, task_, visit_);
         rows.end(optics::trace_along(lens, along_, ray, rows));
     }
 
   private:
     LensAtWavelengths<T> lenses_;
-    const Way& way_;
-    optics::RayWay<T> along_;
+    const TraceTask& task_;
+    optics::RayCourse<T> along_;
     const Visit& visit_;
 };
 
-/// The same by the way's device, a chunk of rays at a time; what it fails at, as above.
+/// The same by the task's device, a chunk of rays at a time; what it fails at, as above.
 template <class T, class Visit>
 class DeviceTracing {
   public:
-    DeviceTracing(const optics::Lens& lens, const Way& way, const Visit& visit)
-        : lens_(lens), way_(way), along_(way_in<T>(way.along)), visit_(visit), on_failure_(lens, way, visit) {}
+    DeviceTracing(const optics::Lens& lens, const TraceTask& task, const Visit& visit)
+        : lens_(lens), task_(task), along_(course_in<T>(task.along)), visit_(visit), on_failure_(lens, task, visit) {}
 
     void trace(const GivenRay& given) {
         constexpr std::size_t kMostRays = 16384;  // whose events are some ten megabytes
@@ -181,7 +181,7 @@ class DeviceTracing {
 
     /// To be called at the end.
     void finish() {
-        if (rays_.empty() || way_.device->has_failed() || !finish_on_device()) {
+        if (rays_.empty() || task_.device->has_failed() || !finish_on_device()) {
             std::ranges::for_each(rays_, [&](const GivenRay& given) { on_failure_.trace(given); });
         }
         rays_.clear();
@@ -200,14 +200,14 @@ class DeviceTracing {
         }
         std::optional<optics::DeviceEvents<T>> found;
         try {
-            const device::Device& device = way_.device->device();
+            const device::Device& device = task_.device->device();
             found.emplace(device, optics::DeviceLens<T>(device, at), rays, wavelengths_, along_);
         } catch (const device::Error& error) {
-            way_.device->fail(error.what());
+            task_.device->fail(error.what());
             return false;
         }
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            RayRows<T, Visit> rows(at.at(wavelengths_[i]), rays_[i], rays[i], way_, visit_);
+            RayRows<T, Visit> rows(at.at(wavelengths_[i]), rays_[i], rays[i], task_, visit_);
             std::ranges::for_each(found->events(i), std::ref(rows));
             rows.end(found->end(i));
         }
@@ -215,8 +215,8 @@ class DeviceTracing {
     }
 
     const optics::Lens& lens_;
-    const Way& way_;
-    optics::RayWay<T> along_;
+    const TraceTask& task_;
+    optics::RayCourse<T> along_;
     const Visit& visit_;
     RayTracing<T, Visit> on_failure_;
     std::vector<GivenRay> rays_;
@@ -227,16 +227,16 @@ class DeviceTracing {
 
 /// Tells `visit` the rows of all rays, in their order.
 template <class T, class Visit>
-void trace_all(const optics::Lens& lens, const GivenRays& rays, const Way& way, const Visit& visit) {
+void trace_all(const optics::Lens& lens, const GivenRays& rays, const TraceTask& task, const Visit& visit) {
     if constexpr (!std::is_same_v<T, long double>) {  // which no device has
-        if (way.device != nullptr) {
-            DeviceTracing<T, Visit> tracing(lens, way, visit);
+        if (task.device != nullptr) {
+            DeviceTracing<T, Visit> tracing(lens, task, visit);
             rays.for_each([&](const GivenRay& given) { tracing.trace(given); });
             tracing.finish();
             return;
         }
     }
-    RayTracing<T, Visit> tracing(lens, way, visit);
+    RayTracing<T, Visit> tracing(lens, task, visit);
     rays.for_each([&](const GivenRay& given) { tracing.trace(given); });
 }
 

@@ -114,9 +114,9 @@ struct ChartGrid {
     std::string caption{};
     std::vector<PlotChart> panels{};  // row by row
     std::size_t columns = 2;
-    bool shares_x = true;                   // one range for all panels, its numbers under the lowest only
-    bool shares_y = true;                   // … and at the leftmost
-    bool shares_colours = false;            // one range for the panels' maps, its bar at the rightmost
+    bool has_common_x = true;               // one range for all panels, its numbers under the lowest only
+    bool has_common_y = true;               // … and at the leftmost
+    bool has_common_colours = false;        // one range for the panels' maps, its bar at the rightmost
     ChartSize frame{300.0, 200.0};          // of each panel's axes
     std::vector<std::string> row_labels{};  // at the left of each row; may be empty
 };
@@ -147,8 +147,8 @@ ChartFrame fitted_frame(const PlotChart& chart, ChartSize size, const PanelLook&
 void draw_chart(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const PanelLook& look);
 
 /// One range that holds the data of all charts, put into their axes where they leave it open.
-void share_x_range(std::vector<PlotChart>& charts);
-void share_y_range(std::vector<PlotChart>& charts);
-void share_colour_range(std::vector<PlotChart>& charts);
+void unite_x_ranges(std::vector<PlotChart>& charts);
+void unite_y_ranges(std::vector<PlotChart>& charts);
+void unite_colour_ranges(std::vector<PlotChart>& charts);
 
 }  // namespace lensproof::draw

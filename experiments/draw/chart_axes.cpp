@@ -207,7 +207,7 @@ void equalise(ResolvedAxes& axes, double width, double height) {
     }
 }
 
-void share_range(std::vector<PlotChart>& charts, bool along_x) {
+void unite_ranges(std::vector<PlotChart>& charts, bool along_x) {
     Extent all;
     const auto axis_of = [&](PlotChart& chart) -> ChartAxis& { return along_x ? chart.x : chart.y; };
     ChartAxis joined;
@@ -295,11 +295,11 @@ std::string axis_title(const ChartAxis& axis, const ResolvedAxis& resolved) {
     return unit.empty() ? axis.label : axis.label.empty() ? unit : axis.label + " (" + unit + ")";
 }
 
-void share_x_range(std::vector<PlotChart>& charts) {
-    share_range(charts, true);
+void unite_x_ranges(std::vector<PlotChart>& charts) {
+    unite_ranges(charts, true);
 }
 
-void share_colour_range(std::vector<PlotChart>& charts) {
+void unite_colour_ranges(std::vector<PlotChart>& charts) {
     Extent all;
     for (const PlotChart& chart : charts) {
         if (chart.map) {
@@ -313,8 +313,8 @@ void share_colour_range(std::vector<PlotChart>& charts) {
     }
 }
 
-void share_y_range(std::vector<PlotChart>& charts) {
-    share_range(charts, false);
+void unite_y_ranges(std::vector<PlotChart>& charts) {
+    unite_ranges(charts, false);
 }
 
 }  // namespace lensproof::draw

@@ -35,10 +35,11 @@ std::vector<GridPanel> measured_panels(const std::vector<PlotChart>& charts, con
     std::vector<GridPanel> panels;
     for (std::size_t i = 0; i < charts.size(); ++i) {
         GridPanel panel;
-        panel.look = {.has_x_numbers = !grid.shares_x || i + columns >= charts.size(),
-                      .has_y_numbers = !grid.shares_y || i % columns == 0,
-                      .has_legend = false,
-                      .has_colour_bar = !grid.shares_colours || i % columns + 1 == columns || i + 1 == charts.size()};
+        panel.look = {
+            .has_x_numbers = !grid.has_common_x || i + columns >= charts.size(),
+            .has_y_numbers = !grid.has_common_y || i % columns == 0,
+            .has_legend = false,
+            .has_colour_bar = !grid.has_common_colours || i % columns + 1 == columns || i + 1 == charts.size()};
         panel.frame = chart_frame(charts[i], {0.0, 0.0, grid.frame.width, grid.frame.height});
         panel.margins = panel_margins(charts[i], panel.frame, panel.look);
         panels.push_back(std::move(panel));
@@ -96,14 +97,14 @@ double draw_grid_heading(Svg& svg, const ChartGrid& grid, double top, double wid
 std::string chart_grid_svg(const ChartGrid& grid) {
     std::vector<PlotChart> charts = grid.panels;
     const std::size_t columns = std::clamp<std::size_t>(grid.columns, 1, std::max<std::size_t>(charts.size(), 1));
-    if (grid.shares_x) {
-        share_x_range(charts);
+    if (grid.has_common_x) {
+        unite_x_ranges(charts);
     }
-    if (grid.shares_y) {
-        share_y_range(charts);
+    if (grid.has_common_y) {
+        unite_y_ranges(charts);
     }
-    if (grid.shares_colours) {
-        share_colour_range(charts);
+    if (grid.has_common_colours) {
+        unite_colour_ranges(charts);
     }
     std::vector<GridPanel> panels = measured_panels(charts, grid, columns);
     const GridMargins margins = widest_margins(panels, columns);

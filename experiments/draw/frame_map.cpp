@@ -131,8 +131,8 @@ std::string frame_map_svg(const FrameMap& map, const AxisRange& range, const std
                            .caption = "",
                            .panels = {values, coverage},
                            .columns = 2,
-                           .shares_x = false,
-                           .shares_y = false,
+                           .has_common_x = false,
+                           .has_common_y = false,
                            .frame = {kFrameWidth, kFrameWidth * height / width}});
 }
 

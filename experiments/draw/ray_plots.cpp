@@ -140,7 +140,7 @@ std::string field_curves_svg(const PlotHeading& heading, const std::vector<analy
                            .caption = heading.conditions,
                            .panels = {std::move(panels.astigmatism), std::move(panels.distortion)},
                            .columns = 2,
-                           .shares_x = false,
+                           .has_common_x = false,
                            .frame = {300.0, 360.0}});
 }
 

@@ -131,8 +131,8 @@ std::string psf_svg(const PlotHeading& heading, const std::vector<analysis::PsfM
     ChartGrid grid{.title = plot_title(heading, "point spread function"),
                    .caption = heading.conditions,
                    .columns = 2,
-                   .shares_x = false,
-                   .shares_y = false,
+                   .has_common_x = false,
+                   .has_common_y = false,
                    .frame = {kMapSide, kMapSide}};
     for (const analysis::PsfMap& field : fields) {
         grid.panels.push_back(psf_chart(field, false));

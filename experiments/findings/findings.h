@@ -64,7 +64,7 @@ struct Subject {
 
 /// What a plot's curves run over: their `image_height`, whatever it holds.
 enum class PlotOver {
-    image_height,  // shares of the half-diagonal
+    image_height,  // fractions of the half-diagonal
     azimuth,       // ° from right to down
     residual,      // of a point's coordinate, over its rms
 };

@@ -37,8 +37,8 @@ TEST(FitCommand, SaysWhatIsOtherwise) {
     EXPECT_TRUE((*decentre)["determined"].is_boolean());
     ASSERT_FALSE(found["undetermined"].empty());
     double squares = 0.0;
-    for (const auto& share : found["undetermined"].back()["combination"]) {
-        squares += share.get<double>() * share.get<double>();
+    for (const auto& component : found["undetermined"].back()["combination"]) {
+        squares += component.get<double>() * component.get<double>();
     }
     EXPECT_NEAR(squares, 1.0, 0.15);  // shares below 0.15 are left out
     EXPECT_GT(found["undetermined"].back()["standard_error"], 0.5);

@@ -60,15 +60,15 @@ TEST_F(RunOptionsTest, DoesAPartAlone) {
     EXPECT_TRUE(says(wrong.err, "expected a study of e.toml: lengths, spots"));
 }
 
-// Shares of the steps that one machine or several do in any order; the run that writes the report finds all of them
+// Shards of the steps that one machine or several do in any order; the run that writes the report finds all of them
 // kept, and says what it says without.
-TEST_F(RunOptionsTest, DoesSharesOfTheSteps) {
+TEST_F(RunOptionsTest, DoesShardsOfTheSteps) {
     EXPECT_EQ(place_.run({"run", "e.toml", "-o", "whole"}).status, 0);
     std::size_t made = 0;
     for (const char* shard : {"3/3", "1/3", "2/3"}) {
-        const Outcome share = place_.run({"run", "e.toml", "-o", "shared", "--shard", shard, "--json", "-"});
-        EXPECT_EQ(share.status, 0) << share.err;
-        made += json::parse(share.out)["made"].get<std::size_t>();
+        const Outcome part = place_.run({"run", "e.toml", "-o", "shared", "--shard", shard, "--json", "-"});
+        EXPECT_EQ(part.status, 0) << part.err;
+        made += json::parse(part.out)["made"].get<std::size_t>();
     }
     EXPECT_EQ(made, 10U);
     EXPECT_FALSE(place_.has("shared/report.json"));

@@ -28,7 +28,7 @@ std::filesystem::path file_of(std::string_view bytes, const char* name) {
 /// Pictures that a fuzzer has time for; larger ones take longer, and that is all.
 constexpr double kLargestMib = 2.0;
 
-formats::Image read_both_ways(const std::filesystem::path& file) {
+formats::Image read_as_picture_and_photo(const std::filesystem::path& file) {
     formats::largest_picture_mib() = kLargestMib;
     formats::read_photo_header(file, std::nullopt);
     formats::read_photo(file, std::nullopt);
@@ -38,11 +38,11 @@ formats::Image read_both_ways(const std::filesystem::path& file) {
 }  // namespace
 
 formats::Image picture(std::string_view bytes, Name /*unused*/) {
-    return read_both_ways(file_of(bytes, "picture"));
+    return read_as_picture_and_photo(file_of(bytes, "picture"));
 }
 
 formats::Image raw_picture(std::string_view bytes, Name /*unused*/) {
-    return read_both_ways(file_of(bytes, "picture.dng"));
+    return read_as_picture_and_photo(file_of(bytes, "picture.dng"));
 }
 
 calibration::PhotographedLens dng(std::string_view bytes, Name /*unused*/) {

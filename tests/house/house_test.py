@@ -9,6 +9,7 @@
 - Tests mirror the sources: a folder below tests/engine, tests/calibration and tests/experiments is a folder there.
 - What GPUs run (a .cu file and all that it includes) is without what nvcc 13 compiles to nothing, and says nothing of:
   the arithmetic of std::complex (x / y becomes x), std::countr_zero and its kin (32, whatever the bits).
+- Names keep to engine/README.md's words: what it calls otherwise (UNNAMED below) is no name's part. Prose may say it.
 - A namespace a file of tests, named as the file: they are compiled several to a text, some with another room's.
 - No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
   namespace are linked into one program, which is undefined behaviour that no linker tells.
@@ -23,6 +24,7 @@ import collections, json, pathlib, re, shutil, subprocess, sys, tempfile
 
 SKIPPED = 77
 HOUSES = ("engine", "calibration", "experiments")
+UNNAMED = re.compile(r"((^|_)(share|way)|Share|Way)s?(?![a-z])")
 
 
 def sources(home, houses=HOUSES):
@@ -117,6 +119,13 @@ def lost_on_gpus(home):
     return found
 
 
+def misnamed(home):
+    not_code = re.compile(r'//[^\n]*|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|^TEST\w*\(.*?\)', re.DOTALL | re.MULTILINE)
+    names = {(name, file.relative_to(home)) for file in sources(home, HOUSES + ("tests",))
+             for name in re.findall(r"[A-Za-z_]\w*", not_code.sub("", file.read_text())) if UNNAMED.search(name)}
+    return [f"{file} names {name}, for which engine/README.md has the words" for name, file in sorted(names)]
+
+
 def crowded(home):
     return [f"{file.relative_to(home)} opens no namespace lensproof::…::{file.stem}"
             for file in sorted((home / "tests").rglob("*_test.cpp"))
@@ -189,9 +198,11 @@ def main():
     planted(crowded, {"tests/cli/run_test.cpp": "namespace lensproof {\n"}, "lensproof::…::run_test")
     planted(lost_on_gpus, {"engine/optics/a_job.cu": '#include "engine/optics/film.h"\n',
                            "engine/optics/film.h": "// std::countr_zero\nstd::complex<T> r;\n"}, "film.h, which GPUs run, has std::complex")
+    planted(misnamed, {"engine/optics/a.h": "// A way.\nint f(double gap_share, double shared, double always) {\n"
+                                            '    return g("share", swayed);\n}\n'}, "a.h names gap_share")
     planted(past_the_door, {"experiments/cli/a_command.cpp": 'fmt::print("{}\\n", name);'}, "fmt::print")
     faults = circles(home) + misplaced(home) + mistold(home) + past_the_door(home) + unmirrored(home) + crowded(home)
-    faults += lost_on_gpus(home)
+    faults += lost_on_gpus(home) + misnamed(home)
     has_ctags = shutil.which("ctags") and "Universal" in subprocess.run(
         ["ctags", "--version"], capture_output=True, text=True).stdout
     if has_ctags:

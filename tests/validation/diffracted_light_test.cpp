@@ -210,10 +210,10 @@ TEST(DiffractedLight, IsTheSameOfRaysThatComeAnyway) {
 // the wave, which the rays' P λ / (2 π² A θ) has as 2 / (π² · 1.22).
 TEST(DiffractedLight, LeavesTheRestToTheImage) {
     const render::Camera camera(tessar({}, 16), {545.0, 555.0, 4, 1}, {}, {});
-    const double share = render::DiffractedEntrance(camera).geometric_share();
-    EXPECT_NEAR(share, 1.0 - 2.0 / (kPi * kPi * 1.22), 1e-12);
-    EXPECT_NEAR(share, 0.838, 0.005);
-    EXPECT_NEAR(render::DiffractedEntrance(camera, {.smallest_airy = 5.0}).geometric_share(), 0.95947, 1e-5);
+    const double fraction = render::DiffractedEntrance(camera).geometric_fraction();
+    EXPECT_NEAR(fraction, 1.0 - 2.0 / (kPi * kPi * 1.22), 1e-12);
+    EXPECT_NEAR(fraction, 0.838, 0.005);
+    EXPECT_NEAR(render::DiffractedEntrance(camera, {.smallest_airy = 5.0}).geometric_fraction(), 0.95947, 1e-5);
 }
 
 // Beside the diffracted pass those that image lose what it takes, and it alone loses nothing.
@@ -221,26 +221,26 @@ TEST(DiffractedLight, IsTakenFromTheImage) {
     const render::Camera camera(tessar({.blades = 6, .f_number = 16.0}, 16), {545.0, 555.0, 4, 1}, {}, {}, true);
     const render::World world = SceneParts(kGrid).scene();
     const render::View view{.world = &world, .camera = &camera, .seed = 1, .paths = {}};
-    const auto shares = [&](const std::vector<std::string>& names) {
+    const auto fractions = [&](const std::vector<std::string>& names) {
         std::vector<double> found;
         for (const render::Render& render : render::renders_of(names, view, {})) {
-            found.push_back(render.film.light_share);
+            found.push_back(render.film.kept_fraction);
         }
         return found;
     };
-    const double share = render::DiffractedEntrance(camera).geometric_share();
-    EXPECT_LT(share, 0.85);
-    EXPECT_EQ(shares({"imaged", "diffracted", "direct"}), (std::vector<double>{share, 1.0, share}));
-    EXPECT_EQ(shares({"imaged", "direct"}), (std::vector<double>{1.0, 1.0}));
+    const double fraction = render::DiffractedEntrance(camera).geometric_fraction();
+    EXPECT_LT(fraction, 0.85);
+    EXPECT_EQ(fractions({"imaged", "diffracted", "direct"}), (std::vector<double>{fraction, 1.0, fraction}));
+    EXPECT_EQ(fractions({"imaged", "direct"}), (std::vector<double>{1.0, 1.0}));
     render::FilmLayout layout = camera.film();
-    layout.light_share = share;
+    layout.kept_fraction = fraction;
     render::Film film(layout);
     render::FilmTile tile(film.layout());
     film.load({.rect = {.width = 1, .height = 1}, .first = 0, .end = 1}, tile);
     tile.add(0, 0, 0, 2.0);
     tile.finish();
     film.store(tile);
-    EXPECT_EQ(film.estimate(0, 0).rgb.y, film.layout().band_nm * 2.0 * share * film.layout().rgb_weights[0].y);
+    EXPECT_EQ(film.estimate(0, 0).rgb.y, film.layout().band_nm * 2.0 * fraction * film.layout().rgb_weights[0].y);
 }
 
 TEST(DiffractedLight, SaysWhatHasNoEdges) {

@@ -87,7 +87,7 @@ TEST_P(OpticsReference, RealWorkingFNumber) {
     EXPECT_NEAR(analysis::real_working_f_number(at("d")) / expected, 1.0, 1e-12);
 }
 
-// Each surface's share against the largest of its kind: a surface's terms are products of a handful of paraxial heights
+// Each surface's sum against the largest of its kind: a surface's terms are products of a handful of paraxial heights
 // and angles, good to 1e-13 of the largest.
 TEST_P(OpticsReference, SeidelSums) {
     const double full_field = data_["lens"]["full_field_deg"].get<double>() * kDegree;

@@ -87,7 +87,7 @@ TEST(Passes, OfWallsFromBothEndsAreWhatLightPathsBring) {
                          .grid = kGrid,
                          .barrel = optics::BarrelFinish{.tube = grey, .edges = grey, .blades = grey}},
                         parts);
-    expect_same_image(studio.by_pass("barrel", 12000), studio.by_light_paths(render::Ways::walls, 24000), 0.12);
+    expect_same_image(studio.by_pass("barrel", 12000), studio.by_light_paths(render::StrayClass::walls, 24000), 0.12);
 }
 
 /// A third of the front under grains and haze.
@@ -125,7 +125,7 @@ TEST(Passes, OfDustFromBothEndsAreWhatLightPathsBring) {
     const Studio studio({.lens = "tessar", .f_number = 4.0, .sensor = kSensor, .grid = kGrid, .dust = dust_in(folder)},
                         lit_from_everywhere(true));
     const render::Film barrel = studio.by_pass("barrel", 2000);
-    const render::Film judge = studio.by_light_paths(render::Ways::walls, 40000);
+    const render::Film judge = studio.by_light_paths(render::StrayClass::walls, 40000);
     const FilmDifference found = difference(barrel, judge);
     EXPECT_NEAR(found.first, found.second, 4.0 * found.error);
     EXPECT_LT(found.error, 0.12 * found.first);
@@ -158,7 +158,7 @@ TEST(Passes, OfWallsAndASkyAreWhatLightPathsBring) {
                          .barrel = optics::BarrelFinish{.tube = grey, .edges = grey, .blades = grey}},
                         parts);
     const render::Film film = studio.by_pass("barrel", 1000);
-    const render::Film judge = studio.by_light_paths(render::Ways::walls, 16000);
+    const render::Film judge = studio.by_light_paths(render::StrayClass::walls, 16000);
     // Of the totals alone: few light paths land, each as bright as many, so that the variance of a pixel is not known.
     const FilmDifference found = difference(film, judge);
     EXPECT_NEAR(found.first, found.second, 4.0 * found.error);
@@ -200,22 +200,22 @@ TEST(Passes, GatherWhatTheAuditSays) {
                         parts);
     const render::EnergyAudit audit = studio.audit(200'000);
     double sum = 0.0;
-    for (const render::EnergyShare& share : audit.shares) {
-        sum += share.share;
+    for (const render::EnergyFraction& fraction : audit.fractions) {
+        sum += fraction.fraction;
     }
     EXPECT_NEAR(sum, 1.0, 1e-12);
-    EXPECT_LT(audit[render::Fate::absorbed].share, 0.01) << "its glasses pass 99 % and more";
-    EXPECT_LT(audit[render::Fate::lost].share, 1e-6);
-    EXPECT_GT(audit[render::Fate::front].share, 0.05);
+    EXPECT_LT(audit[render::Fate::absorbed].fraction, 0.01) << "its glasses pass 99 % and more";
+    EXPECT_LT(audit[render::Fate::lost].fraction, 1e-6);
+    EXPECT_GT(audit[render::Fate::front].fraction, 0.05);
 
     const double pitch_m = 1e-3 * kSensor.pixel_pitch_mm;
     const double light_in = audit.light_in / (pitch_m * pitch_m);
     const auto expect_gathered = [&](render::Fate fate, const render::Picture& films, double most_error) {
-        const auto& [share, error] = audit[fate];
+        const auto& [fraction, error] = audit[fate];
         const auto [light, variance] = gathered(films);
         const double both = std::hypot(light_in * error, std::sqrt(variance));
-        fmt::print("{:.5g} of {:.5g} ± {:.2g}\n", light, light_in * share, both);
-        EXPECT_NEAR(light, light_in * share, 4.0 * both);
+        fmt::print("{:.5g} of {:.5g} ± {:.2g}\n", light, light_in * fraction, both);
+        EXPECT_NEAR(light, light_in * fraction, 4.0 * both);
         EXPECT_LT(both, most_error * light);
     };
     const render::Film imaged = studio.by_pass("imaged", 128);

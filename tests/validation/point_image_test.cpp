@@ -207,8 +207,8 @@ void add_spot(const optics::TraceLens<double>& lens, const optics::ChiefRays& ch
     }
 }
 
-/// Of the image of a dot, from the spots of 48 points that stand for equal shares of its disc: rings at the middles of
-/// equal areas, whose mean square radius is the disc's.
+/// Of the image of a dot, from the spots of 48 points that stand for equal fractions of its disc: rings at the middles
+/// of equal areas, whose mean square radius is the disc's.
 Moments traced_moments(const optics::TraceLens<double>& lens, const optics::ChiefRays& chiefs, const DotRow& row,
                        double centre_mm) {
     constexpr int kRings = 4;

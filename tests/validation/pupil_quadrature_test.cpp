@@ -255,7 +255,7 @@ Passage passage(const Mapped& lens) {
 }
 
 /// Of the light's part of the pupil, what lies outside the region, at places all over the image circle and the band.
-double missed_share(const Mapped& lens) {
+double missed_fraction(const Mapped& lens) {
     constexpr int kPlaces = 400;
     constexpr int kPoints = 1000;
     const render::PixelSampler places(2, 0);
@@ -328,7 +328,7 @@ TEST(PupilMap, NearlyAllPathsPass) {
     for (const Bound& bound : bounds) {
         const Mapped lens = mapped(bound.setting);
         const Passage found = passage(lens);
-        const double missed = missed_share(lens);
+        const double missed = missed_fraction(lens);
         fmt::print("{:44} {:8.4f} {:8.4f} {:8.4f} {:8.1e} {:6}\n", name_of(bound.setting), found.passage, found.least,
                    found.whole, missed, lens.map.size());
         EXPECT_GT(found.passage, bound.passage) << name_of(bound.setting);

@@ -60,8 +60,8 @@ class Studio {
     }
 
     /// All of what is left to chance inside the lens by light paths: the other way to what a pass makes from both ends.
-    [[nodiscard]] render::Film by_light_paths(render::Ways ways, std::uint32_t samples) const {
-        return by_entrance(render::WalkEntrance(camera_, ways), samples);
+    [[nodiscard]] render::Film by_light_paths(render::StrayClass wanted, std::uint32_t samples) const {
+        return by_entrance(render::WalkEntrance(camera_, wanted), samples);
     }
     [[nodiscard]] render::Film ghosts_by_light_paths(std::uint32_t samples) const {
         return by_entrance(render::GhostEntrance(camera_), samples);

@@ -113,13 +113,13 @@ TEST(WaveImage, OfACircleIsAirys) {
     const Star star(camera, setting);
     const DrawnLight drawn(camera, setting.towards, star.wave.image_point(), 400'000);
     const double all = drawn.between(0.0, kInfinity);
-    const auto share = [&](double near, double far) {
+    const auto fraction = [&](double near, double far) {
         return drawn.between(near * star.airy_mm, far * star.airy_mm) / all;
     };
-    EXPECT_NEAR(share(0.0, 1.22), 1.0 - beyond_of_circle(1.22), 0.012);
+    EXPECT_NEAR(fraction(0.0, 1.22), 1.0 - beyond_of_circle(1.22), 0.012);
     for (const auto& [near, far] : {std::array{3.238, 5.0}, {5.0, 10.0}, {10.0, 20.0}, {20.0, 60.0}, {70.0, 140.0}}) {
         const double airys = beyond_of_circle(near) - beyond_of_circle(far);
-        EXPECT_NEAR(share(near, far) / airys, 1.0, 0.03) << near << " to " << far << " λN";
+        EXPECT_NEAR(fraction(near, far) / airys, 1.0, 0.03) << near << " to " << far << " λN";
     }
 }
 

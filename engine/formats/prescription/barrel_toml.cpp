@@ -4,13 +4,13 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr Bounds kShare{.min = 0.0, .max = 1.0};
+constexpr Bounds kFraction{.min = 0.0, .max = 1.0};
 
 /// What the table does not state is as in `others`.
 optics::WallFinish read_finish(TomlTable& table, const optics::WallFinish& others) {
-    return {.albedo = table.number_or("albedo", others.albedo, kShare),
-            .gloss = table.number_or("gloss", others.gloss, kShare),
-            .roughness = table.number_or("roughness", others.roughness, kShare)};
+    return {.albedo = table.number_or("albedo", others.albedo, kFraction),
+            .gloss = table.number_or("gloss", others.gloss, kFraction),
+            .roughness = table.number_or("roughness", others.roughness, kFraction)};
 }
 
 }  // namespace

@@ -181,22 +181,22 @@ template void ColumnTracer<double>::trace<Direction::reverse>(const RayColumns<d
 
 template <class T>
 DeviceEvents<T>::DeviceEvents(const device::Device& device, const DeviceLens<T>& lens, std::span<const Ray<T>> rays,
-                              std::span<const std::uint16_t> wavelengths, const RayWay<T>& way)
+                              std::span<const std::uint16_t> wavelengths, const RayCourse<T>& course)
     // A ghost of n reflections crosses the lens n + 1 times, and meets the sensor at most n times.
-    : most_events_((way.reflections.size() + 1) * static_cast<std::size_t>(lens.view().surface_count) +
-                   way.reflections.size()),
+    : most_events_((course.reflections.size() + 1) * static_cast<std::size_t>(lens.view().surface_count) +
+                   course.reflections.size()),
       buffer_(device, device::Buffer::bytes_for<SurfaceEvent<T>>(rays.size() * most_events_) +
                           device::Buffer::bytes_for<Ray<T>, std::uint16_t, std::int32_t, TracedRay<T>>(rays.size()) +
-                          device::Buffer::bytes_for<int>(way.reflections.size())),
+                          device::Buffer::bytes_for<int>(course.reflections.size())),
       events_(buffer_.column<SurfaceEvent<T>>(rays.size() * most_events_)),
       counts_(buffer_.column<std::int32_t>(rays.size())),
       ends_(buffer_.column<TracedRay<T>>(rays.size())) {
     buffer_.queue().run(EventJob<T>{.lens = lens.view(),
-                                    .way = {.direction = way.direction,
-                                            .rims = way.rims,
-                                            .reflections = {buffer_.send(std::span<const int>(way.reflections)),
-                                                            way.reflections.size()},
-                                            .mirrors = way.mirrors},
+                                    .course = {.direction = course.direction,
+                                               .rims = course.rims,
+                                               .reflections = {buffer_.send(std::span<const int>(course.reflections)),
+                                                               course.reflections.size()},
+                                               .mirrors = course.mirrors},
                                     .rays = buffer_.send(rays),
                                     .wavelength = buffer_.send(wavelengths),
                                     .events = events_.there,

@@ -10,7 +10,7 @@
 #include "engine/optics/device/device_lens.h"
 #include "engine/optics/packet/ray_batch.h"
 #include "engine/optics/packet/trace_batch.h"
-#include "engine/optics/ray_way.h"
+#include "engine/optics/ray_course.h"
 
 namespace lensproof::optics {
 
@@ -55,7 +55,7 @@ class DeviceEvents {
   public:
     /// Of these rays, each at its wavelength of the lens. Throws device::Error.
     DeviceEvents(const device::Device& device, const DeviceLens<T>& lens, std::span<const Ray<T>> rays,
-                 std::span<const std::uint16_t> wavelengths, const RayWay<T>& way);
+                 std::span<const std::uint16_t> wavelengths, const RayCourse<T>& course);
 
     /// In their order; and where the ray ended.
     [[nodiscard]] std::span<const SurfaceEvent<T>> events(std::size_t ray) const {

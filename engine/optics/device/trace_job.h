@@ -3,7 +3,7 @@
 #include "engine/optics/device/lens_view.h"
 #include "engine/optics/packet/ray_batch.h"
 #include "engine/optics/packet/trace_batch.h"
-#include "engine/optics/ray_way.h"
+#include "engine/optics/ray_course.h"
 
 namespace lensproof::optics {
 
@@ -67,7 +67,7 @@ struct EventJob {
     static constexpr int kThreadsPerBlock = 128;
 
     LensView<T> lens;
-    RayWay<T, std::span<const int>> way;
+    RayCourse<T, std::span<const int>> course;
     const Ray<T>* rays = nullptr;
     const std::uint16_t* wavelength = nullptr;
     SurfaceEvent<T>* events = nullptr;
@@ -79,7 +79,7 @@ struct EventJob {
         const auto i = static_cast<std::size_t>(item);
         SurfaceEvent<T>* to = events + i * static_cast<std::size_t>(most_events);
         int count = 0;
-        ends[i] = trace_along(lens.at(wavelength[i]), way, rays[i],
+        ends[i] = trace_along(lens.at(wavelength[i]), course, rays[i],
                               [&](const SurfaceEvent<T>& event) { to[count++] = event; });
         event_counts[i] = count;
     }

@@ -24,9 +24,9 @@ class GhostTracer {
     static constexpr int kLanes = Numbers::kLanes;
 
     /// Rays as they enter the lens.
-    GhostTracer(const KernelLens<double>& lens, const GhostWay& way, const std::uint16_t* wavelengths,
+    GhostTracer(const KernelLens<double>& lens, const KernelGhost& ghost, const std::uint16_t* wavelengths,
                 const Vec3<Numbers>& origin, const Vec3<Numbers>& direction)
-        : origin_(origin), direction_(direction), lens_(lens), way_(way), wavelengths_(wavelengths) {}
+        : origin_(origin), direction_(direction), lens_(lens), ghost_(ghost), wavelengths_(wavelengths) {}
 
     static Vec3<Numbers> everywhere(const Vec3d& v) { return {Numbers(v.x), Numbers(v.y), Numbers(v.z)}; }
     template <class Of>
@@ -46,7 +46,7 @@ class GhostTracer {
         int next = 0;
         bool is_forward = true;
         for (int index = 0; any(going_); index += is_forward ? 1 : -1) {
-            const bool reflects = next < way_.count && way_.reflections[next] == index;
+            const bool reflects = next < ghost_.count && ghost_.reflections[next] == index;
             if (index < 0 || index > lens_.count || (index == lens_.count && !reflects)) {
                 return;
             }
@@ -85,14 +85,14 @@ class GhostTracer {
 
     void reflect_at_sensor() {
         going_ = going_ && direction_.z > Numbers(0.0);
-        const Numbers distance = (Numbers(way_.image_z - last_vertex_z_) - origin_.z) / direction_.z;
+        const Numbers distance = (Numbers(ghost_.image_z - last_vertex_z_) - origin_.z) / direction_.z;
         origin_ = origin_ + distance * direction_;
         origin_.z = Numbers(0.0);
-        last_vertex_z_ = way_.image_z;
+        last_vertex_z_ = ghost_.image_z;
         // Behind the last surface.
         cross(lens_.count - 1, false, distance);
         direction_.z = -direction_.z;
-        at_surfaces_ = at_surfaces_ * Numbers(way_.mirrors.sensor);
+        at_surfaces_ = at_surfaces_ * Numbers(ghost_.mirrors.sensor);
     }
 
     struct Meeting {
@@ -210,7 +210,7 @@ class GhostTracer {
         if (reflects) {
             direction = reflect(direction, met.normal, cos_incidence);
             if (by_blades) {
-                at_surfaces_ = at_surfaces_ * (Numbers(way_.mirrors.blades) * (Numbers(1.0) - open));
+                at_surfaces_ = at_surfaces_ * (Numbers(ghost_.mirrors.blades) * (Numbers(1.0) - open));
             } else {
                 const Numbers reflected =
                     is_coated
@@ -261,17 +261,17 @@ class GhostTracer {
     Numbers ratio_squared_{0.0};
     Mask going_{true};
     const KernelLens<double>& lens_;
-    const GhostWay& way_;
+    const KernelGhost& ghost_;
     const std::uint16_t* wavelengths_;
     double last_vertex_z_ = 0.0;
 };
 
 template <class Abi>
-[[gnu::flatten]] void trace_lanes(const KernelLens<double>& lens, const GhostWay& way, const std::uint16_t* wavelengths,
-                                  const Ray<double>& ray, GhostLanes& lanes) {
+[[gnu::flatten]] void trace_lanes(const KernelLens<double>& lens, const KernelGhost& ghost,
+                                  const std::uint16_t* wavelengths, const Ray<double>& ray, GhostLanes& lanes) {
     using Tracer = GhostTracer<Abi, Rims::clip>;
     for (std::size_t first = 0; first < kGhostLanes; first += Tracer::kLanes) {
-        Tracer tracer(lens, way, wavelengths + first, Tracer::everywhere(ray.origin),
+        Tracer tracer(lens, ghost, wavelengths + first, Tracer::everywhere(ray.origin),
                       Tracer::everywhere(ray.direction));
         tracer.trace();
         for (int lane = 0; lane < Tracer::kLanes; ++lane) {
@@ -286,12 +286,12 @@ template <class Abi>
 }
 
 template <class Abi>
-[[gnu::flatten]] void follow_rays(const KernelLens<double>& lens, const GhostWay& way, FollowedRays& rays) {
+[[gnu::flatten]] void follow_rays(const KernelLens<double>& lens, const KernelGhost& ghost, FollowedRays& rays) {
     using Tracer = GhostTracer<Abi, Rims::follow>;
     const std::uint16_t wavelengths[kFollowedRays] = {};
     for (std::size_t first = 0; first < kFollowedRays; first += Tracer::kLanes) {
         const TracedRay<double>* given = rays.ray.data() + first;
-        Tracer tracer(lens, way, wavelengths,
+        Tracer tracer(lens, ghost, wavelengths,
                       Tracer::by_lane([&](int lane) -> const Vec3d& { return given[lane].ray.origin; }),
                       Tracer::by_lane([&](int lane) -> const Vec3d& { return given[lane].ray.direction; }));
         tracer.trace();

@@ -6,7 +6,7 @@
 namespace lensproof::optics {
 
 /// A ghost as the loop sees it: plain arrays.
-struct GhostWay {
+struct KernelGhost {
     const int* reflections = nullptr;
     int count = 0;
     StrayMirrors<double> mirrors;
@@ -21,9 +21,9 @@ double lane_coated_reflectance(const SpectralLens<double>& lens, int wavelength,
 std::optional<double> lane_limit_margin(const SpectralLens<double>& lens, int surface, Vec2d at, bool by_blades);
 
 struct GhostKernels {
-    void (*trace)(const KernelLens<double>& lens, const GhostWay& way, const std::uint16_t* wavelengths,
+    void (*trace)(const KernelLens<double>& lens, const KernelGhost& ghost, const std::uint16_t* wavelengths,
                   const Ray<double>& ray, GhostLanes& lanes) = nullptr;
-    void (*follow)(const KernelLens<double>& lens, const GhostWay& way, FollowedRays& rays) = nullptr;
+    void (*follow)(const KernelLens<double>& lens, const KernelGhost& ghost, FollowedRays& rays) = nullptr;
 };
 
 /// Compiled for each level by itself (.ci/rooms.cmake).

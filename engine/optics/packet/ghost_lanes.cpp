@@ -11,7 +11,7 @@ const LoopsByLevel<GhostKernels>& ghost_kernels() {
     return found;
 }
 
-GhostWay way_of(const SpectralLens<double>& lens, const GhostPath& path, const StrayMirrors<double>& mirrors) {
+KernelGhost kernel_ghost(const SpectralLens<double>& lens, const GhostPath& path, const StrayMirrors<double>& mirrors) {
     return {.reflections = path.data(),
             .count = static_cast<int>(path.size()),
             .mirrors = mirrors,
@@ -32,7 +32,8 @@ GhostLanes trace_ghost_lanes(const SpectralLens<double>& lens, std::span<const s
                              const GhostPath& path, const Ray<double>& ray, const StrayMirrors<double>& mirrors,
                              std::optional<SimdLevel> level) {
     GhostLanes lanes;
-    ghost_kernels().at(level).trace(kernel_lens(lens), way_of(lens, path, mirrors), wavelengths.data(), ray, lanes);
+    ghost_kernels().at(level).trace(kernel_lens(lens), kernel_ghost(lens, path, mirrors), wavelengths.data(), ray,
+                                    lanes);
     return lanes;
 }
 
@@ -45,7 +46,7 @@ std::optional<double> lane_limit_margin(const SpectralLens<double>& lens, int su
 
 void follow_ghost_rays(const SpectralLens<double>& lens, const GhostPath& path, const StrayMirrors<double>& mirrors,
                        FollowedRays& rays, std::optional<SimdLevel> level) {
-    ghost_kernels().at(level).follow(kernel_lens(lens), way_of(lens, path, mirrors), rays);
+    ghost_kernels().at(level).follow(kernel_lens(lens), kernel_ghost(lens, path, mirrors), rays);
 }
 
 }  // namespace lensproof::optics

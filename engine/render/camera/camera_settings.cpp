@@ -56,10 +56,10 @@ std::optional<optics::PolygonStop> read_blades(TomlTable& table) {
 }
 
 DustSettings read_dust(TomlTable& table) {
-    constexpr Bounds kShare{.min = 0.0, .max = 1.0};
+    constexpr Bounds kFraction{.min = 0.0, .max = 1.0};
     DustSettings dust{.picture = read_file_name(table, "picture"),
-                      .albedo = table.number("albedo", kShare),
-                      .through = table.number_or("through", DustSettings{}.through, kShare)};
+                      .albedo = table.number("albedo", kFraction),
+                      .through = table.number_or("through", DustSettings{}.through, kFraction)};
     table.finish();
     return dust;
 }

@@ -36,7 +36,7 @@ void BasicSharedRays<T>::weigh(CameraPathBuffer& paths) {
         const auto at = static_cast<std::size_t>(first);
         take_heroes(paths, at);
         trace(paths, at);
-        kernels_->share_rays(sensor_, chunk_);
+        kernels_->trace_shared(sensor_, chunk_);
         give_weights(paths, at);
     }
 }

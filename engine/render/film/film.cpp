@@ -99,7 +99,7 @@ std::size_t film_bytes_per_pixel(const FilmLayout& layout) {
 
 FilmTile::FilmTile(const FilmLayout& layout)
     : band_nm_(layout.band_nm),
-      light_share_(layout.light_share),
+      kept_fraction_(layout.kept_fraction),
       film_px_{static_cast<double>(layout.width), static_cast<double>(layout.height)},
       filter_radius_px_(layout.filter.radius_px()),
       stride_(all_sums(layout)),
@@ -121,7 +121,7 @@ void FilmTile::add(std::size_t pixel, std::uint32_t sample, std::span<const std:
     Vec3d rgb;
     for (std::size_t i = 0; i < strata.size(); ++i) {
         const Light& light = lights_[strata[i]];
-        const double quarter = 0.25 * light_share_ * static_cast<double>(irradiance[i]);
+        const double quarter = 0.25 * kept_fraction_ * static_cast<double>(irradiance[i]);
         rgb = rgb + rgb_of(light, quarter);
         sums[light.layer] += quarter;
     }
@@ -166,7 +166,7 @@ void FilmTile::splat(const std::array<Vec2d, 4>& at_px, std::span<const std::uin
     Splat splat{.at_px = at_px, .path = light_paths_};
     bool is_seen = false;
     for (std::size_t i = 0; i < strata.size(); ++i) {
-        splat.irradiance[i] = static_cast<float>(light_share_) * irradiance[i];
+        splat.irradiance[i] = static_cast<float>(kept_fraction_) * irradiance[i];
         splat.strata[i] = strata[i];
         const auto& [x, y] = at_px[i];
         if (irradiance[i] != 0.0F && !std::isfinite(irradiance[i] + x + y)) {

@@ -43,11 +43,11 @@ struct FilmLayout {
     std::vector<double> layer_nm;  // centres of the spectral layers, of equal width
     std::vector<Vec3d> rgb_weights;  // a wavelength stratum each: linear RGB of 1 W·m⁻²·nm⁻¹ on the film, per nm; as
                                      // many strata as layers, or a multiple
-    double band_nm = 0.0;       // what all strata cover
-    PixelFilter filter;         // that splats are spread with
-    bool has_splats = false;    // sums for light paths are kept
-    bool has_features = false;  // depth, albedo, normals are kept
-    double light_share = 1.0;   // of what is added to it, that is kept: the rest goes to other films
+    double band_nm = 0.0;        // what all strata cover
+    PixelFilter filter;          // that splats are spread with
+    bool has_splats = false;     // sums for light paths are kept
+    bool has_features = false;   // depth, albedo, normals are kept
+    double kept_fraction = 1.0;  // of what is added to it, that is kept: the rest goes to other films
 };
 
 /// Of sums in memory, that all films of a picture may take; a camera's own without features and splats.
@@ -98,7 +98,7 @@ class FilmTile {
             ++left_out_;
             return;
         }
-        const double kept = light_share_ * irradiance;
+        const double kept = kept_fraction_ * irradiance;
         const Light& light = lights_[stratum];
         Vec3d& rgb = block_of(pixel, sample).rgb;
         rgb = rgb + rgb_of(light, kept);
@@ -169,7 +169,7 @@ class FilmTile {
 
     std::vector<Light> lights_;
     double band_nm_ = 0.0;
-    double light_share_ = 1.0;
+    double kept_fraction_ = 1.0;
     Vec2d film_px_;  // its size
     double filter_radius_px_ = 0.0;
     std::size_t stride_ = 0;

@@ -59,10 +59,11 @@ EnergyAudit energy_audit(const View& view, std::uint32_t paths) {
     audit.light_in = sum * pitch_m * pitch_m;
     for (std::size_t i = 0; sum > 0.0 && i < found.size(); ++i) {
         // Of x / (x + y): the paths of x and those of the others, y, are not the same ones.
-        const double share = found[i].rgb.x / sum;
+        const double fraction = found[i].rgb.x / sum;
         const double own = found[i].variance.x;
-        audit.shares[i] = {share,
-                           std::sqrt((1.0 - share) * (1.0 - share) * own + share * share * (variance - own)) / sum};
+        audit.fractions[i] = {
+            fraction,
+            std::sqrt((1.0 - fraction) * (1.0 - fraction) * own + fraction * fraction * (variance - own)) / sum};
     }
     return audit;
 }

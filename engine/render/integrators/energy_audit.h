@@ -10,18 +10,20 @@
 namespace lensproof::render {
 
 /// A part of the light that comes in, with its standard error, to first order.
-struct EnergyShare {
-    double share = 0.0;
+struct EnergyFraction {
+    double fraction = 0.0;
     double standard_error = 0.0;
 };
 
-/// Light in = what each fate takes: the shares add up to 1. They are estimates of their own, which know nothing of the
-/// films that passes make, and so check them.
+/// Light in = what each fate takes: the fractions add up to 1. They are estimates of their own, which know nothing of
+/// the films that passes make, and so check them.
 struct EnergyAudit {
-    double light_in = 0.0;                   // through the first surface's rim, W·nm⁻¹, the mean over the band
-    std::array<EnergyShare, kFates> shares;  // in the order of Fate
+    double light_in = 0.0;  // through the first surface's rim, W·nm⁻¹, the mean over the band
+    std::array<EnergyFraction, kFates> fractions;  // in the order of Fate
 
-    [[nodiscard]] const EnergyShare& operator[](Fate fate) const { return shares[static_cast<std::size_t>(fate)]; }
+    [[nodiscard]] const EnergyFraction& operator[](Fate fate) const {
+        return fractions[static_cast<std::size_t>(fate)];
+    }
 };
 
 /// "imaged", "ghosts", …, in the order of Fate.

@@ -47,8 +47,8 @@ Render astray(const View& view, Entrance entrance, std::uint64_t salt, LightPath
     return render;
 }
 
-Render by_chance(const View& view, Ways ways, std::uint64_t salt) {
-    return with_splats(view, StrayPaths(view, ways, salt));
+Render by_chance(const View& view, StrayClass wanted, std::uint64_t salt) {
+    return with_splats(view, StrayPaths(view, wanted, salt));
 }
 
 Render ghosts(const View& view, const Integrator& /*integrator*/) {
@@ -59,11 +59,11 @@ Render ghosts(const View& view, const Integrator& /*integrator*/) {
 }
 
 Render faint_ghosts(const View& view, const Integrator& /*integrator*/) {
-    return by_chance(view, Ways::many_reflections, 0x9b05688c2b3e6c1fULL);
+    return by_chance(view, StrayClass::many_reflections, 0x9b05688c2b3e6c1fULL);
 }
 
 Render barrel(const View& view, const Integrator& /*integrator*/) {
-    return by_chance(view, Ways::walls, 0x1f83d9abfb41bd6bULL);
+    return by_chance(view, StrayClass::walls, 0x1f83d9abfb41bd6bULL);
 }
 
 Render diffracted(const View& view, const Integrator& /*integrator*/) {
@@ -80,7 +80,7 @@ Render waves(const View& view, const Integrator& /*integrator*/) {
 }
 
 Render everything(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, WalkEntrance(*view.camera, Ways::all), 0xa54ff53a5f1d36f1ULL);
+    return astray(view, WalkEntrance(*view.camera, StrayClass::all), 0xa54ff53a5f1d36f1ULL);
 }
 
 }  // namespace
@@ -141,7 +141,8 @@ std::vector<Render> renders_of(const std::vector<std::string>& names, const View
     const bool is_diffracted = std::ranges::find(names, "diffracted") != names.end();
     View stray = view;
     stray.camera = view.stray_camera != nullptr ? view.stray_camera : view.camera;
-    const double straight = is_diffracted ? DiffractedEntrance(*stray.camera, view.diffraction).geometric_share() : 1.0;
+    const double straight =
+        is_diffracted ? DiffractedEntrance(*stray.camera, view.diffraction).geometric_fraction() : 1.0;
     const bool has_waves = std::ranges::find(names, "waves") != names.end();
     std::vector<Render> renders;
     for (const std::string& name : names) {
@@ -149,7 +150,7 @@ std::vector<Render> renders_of(const std::vector<std::string>& names, const View
         View seen = pass.goes_straight ? view : stray;
         seen.paths.leaves_suns_out = has_waves && (pass.goes_straight || name == "diffracted");
         renders.push_back(pass.render(seen, integrators.of(name)));
-        renders.back().film.light_share = pass.goes_straight ? straight : 1.0;
+        renders.back().film.kept_fraction = pass.goes_straight ? straight : 1.0;
     }
     double bytes = 0.0;
     for (const Render& render : renders) {

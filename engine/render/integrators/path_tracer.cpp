@@ -47,7 +47,7 @@ class PathWalk {
     }
 
     /// What has to be free for a light to be seen from where the path has arrived. Nothing: it sees none.
-    [[nodiscard]] const scene::Segment* to_light() const { return sampled_ ? &sampled_->way : nullptr; }
+    [[nodiscard]] const scene::Segment* to_light() const { return sampled_ ? &sampled_->segment : nullptr; }
     void see_light() { add(scene::light_of(sampled_->light, sampled_->place, start_->path), sampled_->is_hero_alone); }
 
     [[nodiscard]] const PathRadiance& result() const { return result_; }
@@ -57,7 +57,7 @@ class PathWalk {
     [[nodiscard]] bool counts() const { return bounce_ >= settings_->min_bounces; }
 
     void leave_scene() {
-        if (counts() || settings_->shares_sky) {
+        if (counts() || settings_->takes_sky_by_camera) {
             scene_->lights.visit_infinity(
                 ray_.direction, start_->path,
                 [&](scene::Lights::Emission light) {
@@ -132,10 +132,11 @@ class PathWalk {
 
     /// Only as much of a turn as weights need.
     [[nodiscard]] PathTurn weighed(const PathVertex& vertex, const PathVertex::Turn& turn) const {
-        return turn.bsdf.is_delta ? PathTurn{.is_delta = true,
-                                             .is_one_way = start_->drawn != nullptr &&
-                                                           vertex.as_from(turn.onwards, turn.bsdf.wi).is_bent}
-                                  : weighed(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.pdf);
+        return turn.bsdf.is_delta
+                   ? PathTurn{.is_delta = true,
+                              .is_camera_paths_alone =
+                                  start_->drawn != nullptr && vertex.as_from(turn.onwards, turn.bsdf.wi).is_bent}
+                   : weighed(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.pdf);
     }
     [[nodiscard]] PathTurn weighed(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi,
                                    double to_light) const {
@@ -166,7 +167,7 @@ class PathWalk {
         const double to_light =
             light->pdf > 0.0 ? scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
         const double weight = weight_.of_sample(*light, weighed(vertex, light->direction, wi, to_light));
-        sampled_ = {.way = {scene::ray_origin(vertex.hit, light->direction), light->end},
+        sampled_ = {.segment = {scene::ray_origin(vertex.hit, light->direction), light->end},
                     .light = static_cast<float>(weight) * (throughput_ * scattering * light->value),
                     .place = light->place,
                     .is_hero_alone = is_hero_alone_};
@@ -181,7 +182,7 @@ class PathWalk {
 
     /// Light that reaches the path where it has arrived, if its way is free.
     struct SampledLight {
-        scene::Segment way;
+        scene::Segment segment;
         spectral::SpectralSample light;  // but for what a map has at
         scene::MapPlace place;
         bool is_hero_alone = false;
@@ -267,7 +268,7 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
     std::vector<Ray<double>> rays;
     std::vector<std::optional<scene::SurfaceHit>> hits(starts.size());
     std::vector<PathWalk*> seeing;
-    std::vector<scene::Segment> ways;
+    std::vector<scene::Segment> segments;
     std::vector<std::uint8_t> are_blocked(starts.size());
     while (!going.empty()) {
         rays.clear();
@@ -280,21 +281,21 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
         }
         give_numbers(scene.lights, going, hits);
         seeing.clear();
-        ways.clear();
+        segments.clear();
         std::size_t still_going = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             PathWalk* walk = going[i];
             if (walk->arrive(hits[i])) {
                 going[still_going++] = walk;
             }
-            if (const scene::Segment* way = walk->to_light()) {
+            if (const scene::Segment* segment = walk->to_light()) {
                 seeing.push_back(walk);
-                ways.push_back(*way);
+                segments.push_back(*segment);
             }
         }
         going.resize(still_going);
-        scene::find_occluded(*scene.geometry, ways, are_blocked);
-        for (std::size_t i = 0; i < ways.size(); ++i) {
+        scene::find_occluded(*scene.geometry, segments, are_blocked);
+        for (std::size_t i = 0; i < segments.size(); ++i) {
             if (are_blocked[i] == 0) {
                 seeing[i]->see_light();
             }
@@ -315,8 +316,8 @@ PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const
             walk.take_numbers(next, walk.sampler().peek());
         }
         is_going = walk.arrive(hit);
-        const scene::Segment* way = walk.to_light();
-        if (way != nullptr && !scene::is_occluded(*scene.geometry, way->from, way->to)) {
+        const scene::Segment* segment = walk.to_light();
+        if (segment != nullptr && !scene::is_occluded(*scene.geometry, segment->from, segment->to)) {
             walk.see_light();
         }
     }

@@ -16,7 +16,7 @@ struct PathSettings {
     int max_bounces = 8;  // scatterings on a path; 0 shows lights alone
     int min_bounces = 0;  // 0 or 1: the latter leaves out light that comes straight from its source
     /// With the latter: but for what of the sky's light falls to camera paths (`sky_by_camera`).
-    bool shares_sky = false;
+    bool takes_sky_by_camera = false;
     /// Of paths whose first surface sends them one way only: a mirror, smooth glass.
     bool begins_at_mirror = false;
     /// Light that comes straight from a sun is left out: another pass has it (`waves`).

@@ -26,19 +26,19 @@ StrayFilm::Start StrayFilm::start(Vec2d pixel, double image_z, const std::array<
     return {.ray = {film, normalized(to_disc)}, .weight = across.weight * down.weight * steradians};
 }
 
-StrayCameraPaths::StrayCameraPaths(const View& view, Ways ways, std::uint64_t salt)
+StrayCameraPaths::StrayCameraPaths(const View& view, StrayClass wanted, std::uint64_t salt)
     : view_(view),
       film_(*view.camera),
-      ways_(ways),
+      wanted_(wanted),
       barrel_(std::make_shared<const optics::Barrel>(view.camera->lens().value())),
       // Another's than those of the light paths beside them.
       seed_(sampler_detail::mixed(~(view.seed ^ salt))) {
     view_.paths.min_bounces = 1;
-    view_.paths.shares_sky = true;
+    view_.paths.takes_sky_by_camera = true;
 }
 
 void StrayCameraPaths::operator()(const TileSamples& samples, FilmTile& tile) const {
-    if (is_dark(ways_, *barrel_)) {
+    if (is_dark(wanted_, *barrel_)) {
         return;
     }
     add_stray_samples(view_, seed_, samples, tile, [&](Vec2d pixel, const auto& path, PathSampler& numbers, auto& to) {
@@ -73,9 +73,9 @@ float StrayCameraPaths::irradiance(Vec2d pixel, const spectral::PathWavelengths&
     const auto unheard = [](const optics::StrayLight&) {};
     double brought = 0.0;  // radiance
     const auto end_at = [&](optics::StrayEnd end, const optics::StrayLight& out) {
-        if (end == optics::StrayEnd::front && counts(ways_, out)) {
+        if (end == optics::StrayEnd::front && counts(wanted_, out)) {
             PathSettings onwards = view_.paths;
-            onwards.shares_sky = !out.dust_normal;  // all that shines on dust itself is asked for here
+            onwards.takes_sky_by_camera = !out.dust_normal;  // all that shines on dust itself is asked for here
             const PathRadiance found = trace_path(view_.scene(), camera.to_world(out.ray), path, onwards, numbers);
             tile.count_rays(found.rays);
             brought += out.weight * (found.radiance[0] + found.hero_radiance);
@@ -86,17 +86,17 @@ float StrayCameraPaths::irradiance(Vec2d pixel, const spectral::PathWavelengths&
         }
     };
     const optics::StrayEnd end =
-        ways_ == Ways::walls ? walk.follow_to_wall(light, false, unheard) : walk.follow(light, false, unheard);
+        wanted_ == StrayClass::walls ? walk.follow_to_wall(light, false, unheard) : walk.follow(light, false, unheard);
     if (end == optics::StrayEnd::wall) {
         // Few ways from a wall lead out, so it pays to try several.
-        constexpr int kWaysFromWall = 8;
-        light.weight /= kWaysFromWall;
-        for (int way = 0; way < kWaysFromWall; ++way) {
+        constexpr int kTriesFromWall = 8;
+        light.weight /= kTriesFromWall;
+        for (int i = 0; i < kTriesFromWall; ++i) {
             optics::StrayWalk branch = walk;
             optics::StrayLight onwards = light;
             end_at(branch.leave_first_wall(onwards, unheard), onwards);
         }
-        tile.count_rays(kWaysFromWall);
+        tile.count_rays(kTriesFromWall);
     } else {
         end_at(end, light);
     }

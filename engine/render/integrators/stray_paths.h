@@ -55,7 +55,7 @@ void add_stray_samples(const View& view, std::uint64_t seed, const TileSamples& 
 class StrayCameraPaths {
   public:
     /// Throws as WalkEntrance.
-    StrayCameraPaths(const View& view, Ways ways, std::uint64_t salt);
+    StrayCameraPaths(const View& view, StrayClass wanted, std::uint64_t salt);
 
     void operator()(const TileSamples& samples, FilmTile& tile) const;
 
@@ -69,7 +69,7 @@ class StrayCameraPaths {
 
     View view_;
     StrayFilm film_;
-    Ways ways_;
+    StrayClass wanted_;
     std::shared_ptr<const optics::Barrel> barrel_;
     std::uint64_t seed_;
 };
@@ -78,9 +78,9 @@ class StrayCameraPaths {
 /// made by one. A TileRenderer.
 class StrayPaths {
   public:
-    StrayPaths(const View& view, Ways ways, std::uint64_t salt)
-        : camera_(view, ways, salt),
-          light_(view, WalkEntrance(*view.camera, ways), salt, LightPathsKept::beside_camera_paths) {}
+    StrayPaths(const View& view, StrayClass wanted, std::uint64_t salt)
+        : camera_(view, wanted, salt),
+          light_(view, WalkEntrance(*view.camera, wanted), salt, LightPathsKept::beside_camera_paths) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile) const {
         camera_(samples, tile);

@@ -122,9 +122,9 @@ void DiffractedEntrance::land(Entry& entry, std::size_t wavelength, const Wavele
     entry.weight[wavelength] = weight * ray.weight * traced.transmittance;
 }
 
-double DiffractedEntrance::geometric_share() const {
+double DiffractedEntrance::geometric_fraction() const {
     const Wavelength& any = at_.front();
-    return 1.0 - optics::diffracted_share({&mask_, semi_diameter_, any.wavenumber}, any.deflections.smallest);
+    return 1.0 - optics::diffracted_fraction({&mask_, semi_diameter_, any.wavenumber}, any.deflections.smallest);
 }
 
 }  // namespace lensproof::render

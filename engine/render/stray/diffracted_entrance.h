@@ -18,7 +18,7 @@ namespace lensproof::render {
 /// others' differ by the colour error of the lens's pupil.
 ///
 /// The rims of elements, which cut beams aslant, are taken to swallow light, not to diffract it. What goes straight on
-/// through the stop keeps `geometric_share` of its light.
+/// through the stop keeps `geometric_fraction` of its light.
 class DiffractedEntrance {
   public:
     static constexpr bool shows_points = true;  // spread light has a radiance
@@ -33,9 +33,9 @@ class DiffractedEntrance {
     [[nodiscard]] std::optional<Entry> meet(const Ray<double>& ray, const spectral::PathWavelengths& path,
                                             PathSampler& numbers) const;
 
-    /// The share of the light that goes straight on through the stop: the same at every wavelength, since deflections
-    /// count in λN.
-    [[nodiscard]] double geometric_share() const;
+    /// The fraction of the light that goes straight on through the stop: the same at every wavelength, since
+    /// deflections count in λN.
+    [[nodiscard]] double geometric_fraction() const;
 
   private:
     struct Wavelength {

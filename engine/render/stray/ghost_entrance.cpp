@@ -10,7 +10,7 @@ namespace lensproof::render {
 
 namespace {
 
-constexpr double kUnguided = 0.2;  // the share of rays
+constexpr double kUnguided = 0.2;  // the fraction of rays
 
 }  // namespace
 
@@ -20,8 +20,8 @@ GhostEntrance::GhostEntrance(const Camera& camera, bool is_guided)
       guide_(std::make_shared<const GhostGuide>(*camera.lens(), front_.middle(), mirrors_, front_.film_radius_mm(),
                                                 is_guided, camera.cache())) {}
 
-std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceBeam& beam, bool of_beam,
-                                                          PathSampler& numbers) const {
+std::optional<GhostEntrance::DrawnGhost> GhostEntrance::draw_ghost(const pupil::EntranceBeam& beam, bool of_beam,
+                                                                   PathSampler& numbers) const {
     if (guide_->paths().empty()) {
         return std::nullopt;
     }
@@ -40,7 +40,7 @@ std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceB
     const double guided_pdf = of_beam ? guide_->pdf(beam, drawn) : guide_->probability(beam, drawn.ghost);
     const bool is_in_disc = !of_beam || disc.contains(drawn.offset);
     const double even_pdf = is_in_disc ? 1.0 / (ghosts * (of_beam ? disc.area() : 1.0)) : 0.0;
-    return Way{guide_->paths()[drawn.ghost], drawn.offset, (1.0 - unguided) * guided_pdf + unguided * even_pdf};
+    return DrawnGhost{guide_->paths()[drawn.ghost], drawn.offset, (1.0 - unguided) * guided_pdf + unguided * even_pdf};
 }
 
 Entry GhostEntrance::followed(Entry entry, const Ray<double>& ray, const optics::GhostPath& ghost,
@@ -59,23 +59,23 @@ Entry GhostEntrance::followed(Entry entry, const Ray<double>& ray, const optics:
 std::optional<Entry> GhostEntrance::draw(const LightOrigin& from, const spectral::PathWavelengths& path,
                                          bool /*is_hero_alone*/, PathSampler& numbers) const {
     const auto beam = front_.beam(from);
-    const auto way = beam ? draw_way(*beam, true, numbers) : std::nullopt;
-    if (!way) {
+    const auto drawn = beam ? draw_ghost(*beam, true, numbers) : std::nullopt;
+    if (!drawn) {
         return std::nullopt;
     }
-    return followed(front_.entry(from, *beam, way->offset, way->pdf), beam->ray(way->offset), way->path, path);
+    return followed(front_.entry(from, *beam, drawn->offset, drawn->pdf), beam->ray(drawn->offset), drawn->path, path);
 }
 
 std::optional<Entry> GhostEntrance::meet(const Ray<double>& ray, const spectral::PathWavelengths& path,
                                          PathSampler& numbers) const {
     const auto meeting = front_.meet(ray);
-    const auto way = meeting ? draw_way(meeting->beam, false, numbers) : std::nullopt;
-    if (!way) {
+    const auto drawn = meeting ? draw_ghost(meeting->beam, false, numbers) : std::nullopt;
+    if (!drawn) {
         return std::nullopt;
     }
     Entry entry = front_.entry(ray, *meeting);
-    entry.pdf = way->pdf;
-    return followed(entry, meeting->beam.ray(meeting->offset), way->path, path);
+    entry.pdf = drawn->pdf;
+    return followed(entry, meeting->beam.ray(meeting->offset), drawn->path, path);
 }
 
 }  // namespace lensproof::render

@@ -31,15 +31,15 @@ class GhostEntrance {
     [[nodiscard]] const std::vector<optics::GhostPath>& ghosts() const { return guide_->paths(); }
 
   private:
-    struct Way {  // that was drawn
+    struct DrawnGhost {
         optics::GhostPath path;
         Vec2d offset;
         double pdf = 0.0;
     };
     /// With `of_beam` the pdf is that of the ghost and the offset, 1/mm²; else the ghost's probability, and the offset
     /// means nothing.
-    [[nodiscard]] std::optional<Way> draw_way(const pupil::EntranceBeam& beam, bool of_beam,
-                                              PathSampler& numbers) const;
+    [[nodiscard]] std::optional<DrawnGhost> draw_ghost(const pupil::EntranceBeam& beam, bool of_beam,
+                                                       PathSampler& numbers) const;
     [[nodiscard]] Entry followed(Entry entry, const Ray<double>& ray, const optics::GhostPath& ghost,
                                  const spectral::PathWavelengths& path) const;
 

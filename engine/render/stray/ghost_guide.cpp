@@ -61,8 +61,8 @@ GhostGuide::GhostGuide(const optics::Lens& lens, optics::TraceLens<double> trace
 std::string GhostGuide::Known::serialized() const {
     std::string bytes;
     append_bytes(bytes, static_cast<std::uint32_t>(regions.size()), static_cast<std::uint32_t>(cumulative.size()));
-    for (const double share : cumulative) {
-        append_bytes(bytes, share);
+    for (const double weight : cumulative) {
+        append_bytes(bytes, weight);
     }
     for (const analysis::GhostRegion& region : regions) {
         append_bytes(bytes, region.across, region.cell, region.corner.x, region.corner.y, region.search_rays,
@@ -127,8 +127,8 @@ GhostGuide::Known GhostGuide::traced(double radians) const {
         sum += region.cells.empty() ? 0.0 : analysis::measure_ghost(scene, path, region, {.rays = kRaysOfGhost}).energy;
         known.cumulative.push_back(sum);
     }
-    for (double& share : known.cumulative) {
-        share /= sum;
+    for (double& weight : known.cumulative) {
+        weight /= sum;
     }
     if (!(sum > 0.0)) {
         known.cumulative.clear();
@@ -191,11 +191,11 @@ double GhostGuide::pdf(const pupil::EntranceBeam& beam, const Draw& drawn) const
     const Place place = place_of(beam);
     const Vec2d meridional = place.to_meridional(drawn.offset);
     double pdf = 0.0;
-    for (const auto& [steps, share] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
-        const Angle* at = share > 0.0 ? angle(steps) : nullptr;
+    for (const auto& [steps, weight] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
+        const Angle* at = weight > 0.0 ? angle(steps) : nullptr;
         if (at != nullptr && at->known.regions[drawn.ghost].contains(meridional + at->centre)) {
             const double before = drawn.ghost > 0 ? at->known.cumulative[drawn.ghost - 1] : 0.0;
-            pdf += share * (at->known.cumulative[drawn.ghost] - before) / at->known.regions[drawn.ghost].area();
+            pdf += weight * (at->known.cumulative[drawn.ghost] - before) / at->known.regions[drawn.ghost].area();
         }
     }
     return pdf;
@@ -204,9 +204,9 @@ double GhostGuide::pdf(const pupil::EntranceBeam& beam, const Draw& drawn) const
 double GhostGuide::probability(const pupil::EntranceBeam& beam, std::size_t ghost) const {
     const Place place = place_of(beam);
     double probability = 0.0;
-    for (const auto& [steps, share] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
-        if (const Angle* at = share > 0.0 ? angle(steps) : nullptr; at != nullptr) {
-            probability += share * (at->known.cumulative[ghost] - (ghost > 0 ? at->known.cumulative[ghost - 1] : 0.0));
+    for (const auto& [steps, weight] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
+        if (const Angle* at = weight > 0.0 ? angle(steps) : nullptr; at != nullptr) {
+            probability += weight * (at->known.cumulative[ghost] - (ghost > 0 ? at->known.cumulative[ghost - 1] : 0.0));
         }
     }
     return probability;

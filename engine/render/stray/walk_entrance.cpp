@@ -5,20 +5,20 @@
 
 namespace lensproof::render {
 
-WalkEntrance::WalkEntrance(const Camera& camera, Ways ways)
-    : front_(camera), ways_(ways), barrel_(camera.lens().value()) {}
+WalkEntrance::WalkEntrance(const Camera& camera, StrayClass wanted)
+    : front_(camera), wanted_(wanted), barrel_(camera.lens().value()) {}
 
-bool is_dark(Ways ways, const optics::Barrel& barrel) {
-    return ways == Ways::walls && barrel.is_black();
+bool is_dark(StrayClass wanted, const optics::Barrel& barrel) {
+    return wanted == StrayClass::walls && barrel.is_black();
 }
 
-bool counts(Ways ways, const optics::StrayLight& light) {
-    switch (ways) {
-        case Ways::many_reflections:
+bool counts(StrayClass wanted, const optics::StrayLight& light) {
+    switch (wanted) {
+        case StrayClass::many_reflections:
             return light.walls == 0 && light.reflections >= 4;
-        case Ways::walls:
+        case StrayClass::walls:
             return light.walls > 0;
-        case Ways::all:
+        case StrayClass::all:
             break;
     }
     return true;
@@ -28,7 +28,7 @@ std::optional<Entry> WalkEntrance::draw(const LightOrigin& from, const spectral:
                                         bool /*is_hero_alone*/, PathSampler& numbers) const {
     const auto u = numbers.next();
     const auto beam = front_.beam(from);
-    if (!beam || is_dark(ways_, barrel_)) {
+    if (!beam || is_dark(wanted_, barrel_)) {
         return std::nullopt;
     }
     const Disc disc{beam->radius};
@@ -40,7 +40,7 @@ std::optional<Entry> WalkEntrance::meet(const Ray<double>& ray, const spectral::
                                         PathSampler& numbers) const {
     const auto u = numbers.next();
     const auto meeting = front_.meet(ray);
-    if (!meeting || is_dark(ways_, barrel_)) {
+    if (!meeting || is_dark(wanted_, barrel_)) {
         return std::nullopt;
     }
     return landed(front_.entry(ray, *meeting), meeting->beam.ray(meeting->offset), path, u);
@@ -56,7 +56,7 @@ Entry WalkEntrance::landed(Entry entry, const Ray<double>& ray, const spectral::
         int places = 0;
         double kept = 0.0;
         walk.follow(light, true, [&](const optics::StrayLight& on_film) {
-            if (!counts(ways_, on_film)) {
+            if (!counts(wanted_, on_film)) {
                 return;
             }
             ++places;

@@ -8,18 +8,18 @@
 
 namespace lensproof::render {
 
-/// Which of the ways that light takes count.
-enum class Ways {
+/// Which of the light that is left to chance counts.
+enum class StrayClass {
     many_reflections,  // four and more, and no wall: ghosts that are too many to look for one by one
     walls,             // a wall at least once
     all,               // slow, and a judge of others
 };
 
-/// Whether light that took its way is of these.
-bool counts(Ways ways, const optics::StrayLight& light);
+/// Whether light is of these.
+bool counts(StrayClass wanted, const optics::StrayLight& light);
 
 /// Whether no light is: walls that are black send nothing on.
-bool is_dark(Ways ways, const optics::Barrel& barrel);
+bool is_dark(StrayClass wanted, const optics::Barrel& barrel);
 
 /// A ray is drawn evenly over the front of an exact camera; behind it each wavelength goes its own way by chance
 /// (optics::StrayWalk), from the same numbers, so that most of them keep together.
@@ -29,7 +29,7 @@ class WalkEntrance {
     using Entry = render::Entry;
 
     /// Throws InputError for an ideal camera, and as `optics::Barrel` does. The camera outlives it.
-    WalkEntrance(const Camera& camera, Ways ways);
+    WalkEntrance(const Camera& camera, StrayClass wanted);
 
     [[nodiscard]] std::optional<Entry> draw(const LightOrigin& from, const spectral::PathWavelengths& path,
                                             bool is_hero_alone, PathSampler& numbers) const;
@@ -42,7 +42,7 @@ class WalkEntrance {
                                const std::array<double, PathSampler::kNumbers>& seed) const;
 
     CameraFront front_;
-    Ways ways_;
+    StrayClass wanted_;
     optics::Barrel barrel_;
 };
 

@@ -131,7 +131,7 @@ std::optional<Entry> WaveEntrance::draw(const LightOrigin& from, const spectral:
     const Vec3d front = sun.images[path.index[0]].wave.front(u[1]);
     Entry entry{.direction = from.at,
                 .end = camera_->to_world({front, {}}).origin,
-                .pdf = (1.0 - kByEdges) / far_edges_.geometric_share()};
+                .pdf = (1.0 - kByEdges) / far_edges_.geometric_fraction()};
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         const Image& image = sun.images[path.index[i]];
         const WaveImage::Draw drawn = image.wave.draw(u[2], u[3]);

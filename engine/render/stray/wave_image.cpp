@@ -59,7 +59,7 @@ void WaveImage::integrate_light(const analysis::PolychromaticField& field,
 void WaveImage::spread(const analysis::Psf& psf) {
     constexpr auto kSide = static_cast<std::size_t>(kSize);
     constexpr int kFirst = kFft / 2 - kReach;
-    share_.assign(kSide * kSide, 0.0F);
+    fractions_.assign(kSide * kSide, 0.0F);
     double sum = 0.0;
     for (int row = 0; row < kSize; ++row) {
         for (int column = 0; column < kSize; ++column) {
@@ -70,22 +70,23 @@ void WaveImage::spread(const analysis::Psf& psf) {
             // A cell at the pupil's edge counts as much as lies inside: such means fade the picture like this.
             const double faded = sinc(std::numbers::pi * at.x / kFft) * sinc(std::numbers::pi * at.y / kFft);
             const double irradiance = psf.at(kFirst + row, kFirst + column) / (faded * faded);
-            share_[static_cast<std::size_t>(row) * kSide + static_cast<std::size_t>(column)] =
+            fractions_[static_cast<std::size_t>(row) * kSide + static_cast<std::size_t>(column)] =
                 static_cast<float>(irradiance);
             sum += irradiance;
         }
     }
-    const double to_share = static_cast<double>(share_.size()) / sum;
-    for (float& share : share_) {
-        share = static_cast<float>(share * to_share);
+    const double to_fraction = static_cast<double>(fractions_.size()) / sum;
+    for (float& fraction : fractions_) {
+        fraction = static_cast<float>(fraction * to_fraction);
     }
     // Between drawing by the light and evenly by the logarithm of the distance, as edges' rays are drawn.
     distribution_ = scene::PixelDistribution(kSize, kSize, [&](int row) {
         std::vector<double> squares(kSide);
         for (int column = 0; column < kSize; ++column) {
-            const double share = share_[static_cast<std::size_t>(row) * kSide + static_cast<std::size_t>(column)];
+            const double fraction =
+                fractions_[static_cast<std::size_t>(row) * kSide + static_cast<std::size_t>(column)];
             squares[static_cast<std::size_t>(column)] =
-                share * share * (1.0 + std::hypot(column - kReach, row - kReach));
+                fraction * fraction * (1.0 + std::hypot(column - kReach, row - kReach));
         }
         return squares;
     });
@@ -98,7 +99,7 @@ WaveImage::Draw WaveImage::draw(double u1, double u2) const {
     const auto column = static_cast<std::size_t>(std::min(static_cast<int>(at.x), kSize - 1));
     constexpr double kMiddle = kReach + 0.5;  // of the pixel that the chief ray meets
     return {.offset = pixel_mm_ * Vec2d{at.x - kMiddle, at.y - kMiddle},
-            .weight = share_[row * static_cast<std::size_t>(kSize) + column] / drawn.pdf};
+            .weight = fractions_[row * static_cast<std::size_t>(kSize) + column] / drawn.pdf};
 }
 
 Vec3d WaveImage::front(double u) const {

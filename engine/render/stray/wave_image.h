@@ -54,7 +54,7 @@ class WaveImage {
     double pixel_mm_ = 0.0;
     double light_mm2_ = 0.0;
     std::vector<Node> nodes_;
-    std::vector<float> share_;  // of the light, a pixel's over its part of the square; row by row, y rising
+    std::vector<float> fractions_;  // of the light, a pixel's over its part of the square; row by row, y rising
     scene::PixelDistribution distribution_;
 };
 

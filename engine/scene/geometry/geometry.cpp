@@ -282,13 +282,14 @@ bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to)
            (data.has_embree_geometry && embree_finds_any(query));
 }
 
-void find_occluded(const SceneGeometry& scene, std::span<const Segment> ways, std::span<std::uint8_t> are_occluded) {
+void find_occluded(const SceneGeometry& scene, std::span<const Segment> segments,
+                   std::span<std::uint8_t> are_occluded) {
     const SceneGeometry::Data& data = scene.data();
     std::array<Stretch<double>, RayColumns::kMost> stretches;
     const auto stretch = [&](std::size_t i) {
-        return stretches[i % stretches.size()] = stretch_between(scene, ways[i].from, ways[i].to);
+        return stretches[i % stretches.size()] = stretch_between(scene, segments[i].from, segments[i].to);
     };
-    meet_in_columns(data, ways.size(), stretch, [&](std::size_t i, const RayColumns& columns, std::size_t j) {
+    meet_in_columns(data, segments.size(), stretch, [&](std::size_t i, const RayColumns& columns, std::size_t j) {
         Query query{.data = &data, .ray = stretches[i % stretches.size()]};
         const bool is_blocked = is_usable(query.ray.origin, query.ray.direction) &&
                                 (columns.object[j] >= 0.0 || (data.has_embree_geometry && embree_finds_any(query)));

@@ -94,7 +94,7 @@ struct Segment {
 bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to);
 
 /// The same of many ways: 1 where anything stands in one, else 0; `are_occluded` has room for as many.
-void find_occluded(const SceneGeometry& scene, std::span<const Segment> ways, std::span<std::uint8_t> are_occluded);
+void find_occluded(const SceneGeometry& scene, std::span<const Segment> segments, std::span<std::uint8_t> are_occluded);
 
 /// Where a ray begins that leaves `point` on a surface in `direction`: moved along the normal, to the direction's side,
 /// by twice the bound `error_mm` of the point's rounding. The sphere, quad or triangle, which then lies behind, is not

@@ -176,7 +176,7 @@ class Lights {
     double radius_mm_ = 0.0;
     double crossing_pdf_ = 0.0;  // 1/mm²: of light paths from infinity over the disc in front of the scene
     double power_ = 0.0;
-    double directed_ = 0.0;  // share of lights that are not all about
+    double directed_ = 0.0;  // fraction of lights that are not all about
 };
 
 }  // namespace lensproof::scene

@@ -46,10 +46,10 @@ namespace {
 constexpr double kMicrometres = 1000.0;  // of a mm
 constexpr double kStep = 0.05;           // of a pitch, for derivatives
 
-/// A point of a part, mm from the feature's middle on the chart, and its share of the part's light.
+/// A point of a part, mm from the feature's middle on the chart, and its fraction of the part's light.
 struct Node {
     Vec2d off;
-    double share = 0.0;
+    double fraction = 0.0;
 };
 
 /// What of a feature is measured by itself: a rectangle of these half-widths `along` and across it, mm of the chart, of
@@ -277,7 +277,7 @@ std::optional<ChartFeature> look_at(const FeaturePlane& plane, const FilmRays& r
             // By how much of the film the node's part of the chart takes: a lens that distorts spreads a feature
             // unevenly.
             const auto there = local_map(plane, rays, middle + node.off, kStep * pitch);
-            rays.add(plane.point(middle + node.off), node.share * (there ? there->area : 0.0), traced);
+            rays.add(plane.point(middle + node.off), node.fraction * (there ? there->area : 0.0), traced);
         }
         std::vector<Vec2d> offs;
         std::ranges::transform(traced, std::back_inserter(offs),

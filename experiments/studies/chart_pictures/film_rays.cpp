@@ -67,7 +67,7 @@ std::optional<FilmRays::Chief> FilmRays::chief(const Vec3d& point) const {
     return chief ? std::optional(Chief{meridian.back(chief->image_point), chief->field_angle}) : std::nullopt;
 }
 
-void FilmRays::add(const Vec3d& point, double share, std::vector<FilmLight>& light) const {
+void FilmRays::add(const Vec3d& point, double fraction, std::vector<FilmLight>& light) const {
     const Meridian meridian(point);
     for (const Band& band : bands_) {
         const auto bundle = bundle_of(band.chief_rays, meridian.object);
@@ -76,7 +76,7 @@ void FilmRays::add(const Vec3d& point, double share, std::vector<FilmLight>& lig
         }
         for (const analysis::SpotRay& ray :
              analysis::spot_rays(band.lens, *bundle, analysis::beam_outline(band.lens, *bundle), kBeamRings)) {
-            light.push_back({meridian.back(ray.point), share * ray.weight * band.rgb});
+            light.push_back({meridian.back(ray.point), fraction * ray.weight * band.rgb});
         }
     }
 }

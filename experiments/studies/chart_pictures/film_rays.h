@@ -29,8 +29,8 @@ class FilmRays {
     };
     [[nodiscard]] std::optional<Chief> chief(const Vec3d& point) const;
 
-    /// The point's rays, `share` of whose light counts, onto `light`; in lens space.
-    void add(const Vec3d& point, double share, std::vector<FilmLight>& light) const;
+    /// The point's rays, `fraction` of whose light counts, onto `light`; in lens space.
+    void add(const Vec3d& point, double fraction, std::vector<FilmLight>& light) const;
 
     /// The projected solid angle of the beam seen from the image point, sr, in the green.
     [[nodiscard]] double solid_angle(const Vec3d& point) const;

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "engine/base/input_error.h"
+#include "engine/base/order_statistics.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/draw/chart.h"
@@ -102,10 +103,9 @@ findings::Picture map_drawing(const EdgeSetting& setting, const EdgeDiffraction&
         map.values.push_back((i % side < side / 2 ? found.wave_map : found.ray_map).values[i]);
     }
     std::vector<double> ordered(found.wave_map.values.begin(), found.wave_map.values.end());
-    const auto brightest = ordered.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(ordered.size()));
-    std::ranges::nth_element(ordered, brightest);
+    const double brightest = quantile(ordered, 0.999);
     constexpr double kDecades = 4.0;
-    map.range = {*brightest - kDecades, *brightest};
+    map.range = {brightest - kDecades, brightest};
     draw::PlotChart chart{.title = label_of(setting),
                           .caption = "Left by waves, right by rays",
                           .x = {.label = "x", .unit = "λN"},

@@ -237,10 +237,10 @@ EdgeProfile by_wave(const EdgeSetting& setting, const analysis::EdgeWave& wave) 
             for (int j = 0; j < azimuths; ++j) {
                 const double t = (j + 0.5) / azimuths;
                 const double azimuth = radians(kRotation_deg) + half_sector * t * t * (3.0 - 2.0 * t);
-                const double share = azimuths == 1 ? 1.0 : 6.0 * t * (1.0 - t) / azimuths;
+                const double fraction = azimuths == 1 ? 1.0 : 6.0 * t * (1.0 - t) / azimuths;
                 const double r = radius * airy_mm(setting);
                 visit(radius, azimuth, wave.irradiance({r * std::cos(azimuth), r * std::sin(azimuth)}),
-                      2.0 * kPi * radius * kStep * share);
+                      2.0 * kPi * radius * kStep * fraction);
             }
         }
     });

@@ -61,14 +61,14 @@ double usual_pixel_um(const calibration::PhotographedLens& photographed) {
 Judgement judge(const calibration::PhotographedLens& photographed,
                 const std::optional<calibration::DistortionAgreement>& distortion) {
     using findings::Verdict;
-    Judgement judgement{.limit_um = 1e3 * kLimitShare * photographed.half_diagonal_mm(), .reason = {}};
+    Judgement judgement{.limit_um = 1e3 * kLimitFraction * photographed.half_diagonal_mm(), .reason = {}};
     if (photographed.distortion_model.empty()) {
         judgement.reason = "the entry has no distortion";
         return judgement;
     }
-    if (!distortion || distortion->reach < kLeastReachShare) {
+    if (!distortion || distortion->reach < kLeastReachFraction) {
         judgement.reason = fmt::format("both image up to {:.0f} % of the half-diagonal only, expected {:.0f} % or more",
-                                       distortion ? 100.0 * distortion->reach : 0.0, 100.0 * kLeastReachShare);
+                                       distortion ? 100.0 * distortion->reach : 0.0, 100.0 * kLeastReachFraction);
         return judgement;
     }
     const double departure_um = 1e3 * calibration::departure_from_ideal(photographed);

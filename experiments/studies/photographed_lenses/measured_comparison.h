@@ -14,12 +14,12 @@
 
 namespace lensproof::studies {
 
-/// The largest rms difference of distortion between a prescription and photographs of its product, as a share of the
+/// The largest rms difference of distortion between a prescription and photographs of its product, as a fraction of the
 /// half-diagonal: where the right ones within it exceed the wrong ones by most (experiments/README.md).
-inline constexpr double kLimitShare = 1e-3;
+inline constexpr double kLimitFraction = 1e-3;
 
-/// From here on, as a share of the half-diagonal, what both lenses image says something of the lens.
-inline constexpr double kLeastReachShare = 0.8;
+/// From here on, as a fraction of the half-diagonal, what both lenses image says something of the lens.
+inline constexpr double kLeastReachFraction = 0.8;
 
 struct Judgement {
     double limit_um = 0.0;
@@ -46,8 +46,8 @@ struct MeasuredComparison {
 
 /// What is to be seen of the agreement. PASS: within the limit, where a lens without distortion would be at least twice
 /// as far. FAIL: beyond the limit. INCONCLUSIVE: within it where a lens without distortion would be nearly as near, so
-/// that many wrong ones are, too; nothing or less than `kLeastReachShare` to compare over; and beyond the limit for a
-/// fisheye, since lensfun's fisheyes are 0.15 to 0.5 mm off lenses that are right.
+/// that many wrong ones are, too; nothing or less than `kLeastReachFraction` to compare over; and beyond the limit for
+/// a fisheye, since lensfun's fisheyes are 0.15 to 0.5 mm off lenses that are right.
 Judgement judge(const calibration::PhotographedLens& photographed,
                 const std::optional<calibration::DistortionAgreement>& distortion);
 

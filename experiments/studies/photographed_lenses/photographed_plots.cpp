@@ -11,7 +11,7 @@ namespace lensproof::studies {
 
 namespace {
 
-/// (value, share of the values that are not larger), as steps.
+/// (value, fraction of the values that are not larger), as steps.
 std::vector<Vec2d> cumulative(std::vector<double> values) {
     std::ranges::sort(values);
     std::vector<Vec2d> steps;

@@ -10,7 +10,7 @@ namespace lensproof::studies {
 inline constexpr double kPhotographedChartWidth = 760.0;
 inline constexpr double kPhotographedChartHeight = 460.0;
 
-/// Right and wrong prescriptions' residuals, each as the share of them that is smaller.
+/// Right and wrong prescriptions' residuals, each as the fraction of them that is smaller.
 std::string population_chart(const std::vector<PairResult>& results);
 
 /// A pair's distortion, photographed and simulated, over the image height.

@@ -77,7 +77,7 @@ Json pair_json(const PairResult& result) {
     for (const WrongLens& other : result.wrong) {
         json["wrong"].push_back({{"lens", other.name}, {"residual_rms_um", other.residual_um}});
     }
-    json["share_beaten"] = result.share_beaten();
+    json["share_beaten"] = result.fraction_beaten();
     json["doubt"] = result.doubt.empty() ? Json(nullptr) : Json(result.doubt);
     return json;
 }
@@ -177,7 +177,7 @@ findings::Subject pair_subject(const PairResult& result) {
     }
     subject.facts.push_back({"verdict", fmt::format("{}: {}", findings::verdict_name(comparison.judgement.verdict),
                                                     comparison.judgement.reason)});
-    if (const auto beaten = result.share_beaten()) {
+    if (const auto beaten = result.fraction_beaten()) {
         subject.facts.push_back(
             {"against other lenses",
              fmt::format("nearer than {:.0f} % of {}; the nearest of them is {} ({:.1f} µm)", 100.0 * *beaten,

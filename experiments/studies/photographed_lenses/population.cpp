@@ -9,8 +9,8 @@
 #include <map>
 
 #include "calibration/photographed/dng_corrections.h"
-#include "calibration/statistics/order_statistics.h"
 #include "engine/base/infinity.h"
+#include "engine/base/order_statistics.h"
 #include "engine/base/parallel.h"
 #include "engine/base/text.h"
 #include "engine/formats/prescription/load_lens.h"
@@ -142,12 +142,11 @@ std::string doubt_of(const PairResult& result, const std::vector<PairResult>& al
     return "Either: no number here tells which.";
 }
 
-double median_error(const std::vector<double>& values, double median) {
+double median_error(const std::vector<double>& values, double middle) {
     std::vector<double> deviations;
     std::ranges::transform(values, std::back_inserter(deviations),
-                           [&](double value) { return std::abs(value - median); });
-    return kMedianError * calibration::kSigmaPerMedian * calibration::median(deviations) /
-           std::sqrt(static_cast<double>(values.size()));
+                           [&](double value) { return std::abs(value - middle); });
+    return kMedianError * kSigmaPerMedian * median(deviations) / std::sqrt(static_cast<double>(values.size()));
 }
 
 using Databases = std::map<std::filesystem::path, calibration::LensfunDatabase>;
@@ -191,7 +190,7 @@ std::optional<double> PairResult::residual_um() const {
     return comparison.distortion ? std::optional(comparison.distortion->residual.rms_um) : std::nullopt;
 }
 
-std::optional<double> PairResult::share_beaten() const {
+std::optional<double> PairResult::fraction_beaten() const {
     const std::optional<double> right = residual_um();
     if (!right || wrong.empty()) {
         return std::nullopt;
@@ -252,7 +251,7 @@ PopulationSummary summarize(const std::vector<PairResult>& results) {
             summary.wrong_within_limit += other.residual_um <= limit ? 1.0 : 0.0;
         }
         if (result.wrong.size() >= kEnoughWrong) {
-            beaten.push_back(*result.share_beaten());
+            beaten.push_back(*result.fraction_beaten());
         }
     }
     summary.pairs = static_cast<int>(right.size());
@@ -260,16 +259,16 @@ PopulationSummary summarize(const std::vector<PairResult>& results) {
     summary.ranked = static_cast<int>(beaten.size());
     if (!right.empty()) {
         summary.right_within_limit /= static_cast<double>(right.size());
-        summary.right_median_um = calibration::median(right);
+        summary.right_median_um = median(right);
         summary.right_median_error_um = median_error(right, summary.right_median_um);
     }
     if (!wrong.empty()) {
         summary.wrong_within_limit /= static_cast<double>(wrong.size());
-        summary.wrong_median_um = calibration::median(wrong);
+        summary.wrong_median_um = median(wrong);
         summary.wrong_median_error_um = median_error(wrong, summary.wrong_median_um);
     }
     if (!beaten.empty()) {
-        summary.beaten_median = calibration::median(beaten);
+        summary.beaten_median = median(beaten);
     }
     return summary;
 }

@@ -33,8 +33,8 @@ struct PairResult {
     std::vector<WrongLens> wrong{};  // nearest first
     std::string doubt{};             // a sentence: which of lens and entry is to be doubted; empty where they agree
 
-    /// The share of the wrong ones that are farther away than the right one; nothing where there is none.
-    [[nodiscard]] std::optional<double> share_beaten() const;
+    /// The fraction of the wrong ones that are farther away than the right one; nothing where there is none.
+    [[nodiscard]] std::optional<double> fraction_beaten() const;
     [[nodiscard]] std::optional<double> residual_um() const;
 };
 
@@ -54,7 +54,7 @@ struct PopulationSummary {
     double right_median_error_um = 0.0;  // standard, as for a normal distribution's median
     double wrong_median_um = 0.0;
     double wrong_median_error_um = 0.0;
-    double beaten_median = 0.0;  // of the pairs with three wrong lenses or more, the share that the right one beats
+    double beaten_median = 0.0;  // of the pairs with three wrong lenses or more, the fraction that the right one beats
     int ranked = 0;              // those pairs
     double right_within_limit = 0.0;  // shares
     double wrong_within_limit = 0.0;

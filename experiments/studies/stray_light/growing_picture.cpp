@@ -28,9 +28,9 @@ double difference(const formats::Image& a, const formats::Image& b) {
     return std::sqrt(0.5 * square / static_cast<double>(a.pixels.size()));
 }
 
-void add(formats::Image& sum, const formats::Image& more, float share, float of_more) {
+void add(formats::Image& sum, const formats::Image& more, float of_sum, float of_more) {
     std::ranges::transform(sum.pixels, more.pixels, sum.pixels.begin(),
-                           [&](float a, float b) { return share * a + of_more * b; });
+                           [&](float a, float b) { return of_sum * a + of_more * b; });
 }
 
 formats::Image sum_of(const std::vector<formats::Image>& pictures) {

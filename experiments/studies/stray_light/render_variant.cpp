@@ -135,22 +135,23 @@ class VariantSteps {
                          .mirrors = setup_.camera.mirrors,
                          .seed = settings_.seed,
                          .threads = settings_.threads});
-            return Estimate{glare.index.share, glare.index.standard_error};
+            return Estimate{glare.index.fraction, glare.index.standard_error};
         });
     }
 
     [[nodiscard]] std::vector<std::pair<std::string, Estimate>> fates() {
-        const std::vector<Estimate> shares = settings_.steps.step(kAudit, input({}), [&] {
+        const std::vector<Estimate> fractions = settings_.steps.step(kAudit, input({}), [&] {
             progress_(name_of("energy audit"), 0.0);
             std::vector<Estimate> found;
-            for (const render::EnergyShare& share : prepared().audit(settings_.seed, kAuditPaths).shares) {
-                found.push_back({share.share, share.standard_error});
+            for (const render::EnergyFraction& fraction : prepared().audit(settings_.seed, kAuditPaths).fractions) {
+                found.push_back({fraction.fraction, fraction.standard_error});
             }
             return found;
         });
         std::vector<std::pair<std::string, Estimate>> named;
-        std::ranges::transform(render::fate_names(), shares, std::back_inserter(named),
-                               [](const std::string& name, const Estimate& share) { return std::pair(name, share); });
+        std::ranges::transform(
+            render::fate_names(), fractions, std::back_inserter(named),
+            [](const std::string& name, const Estimate& fraction) { return std::pair(name, fraction); });
         return named;
     }
 

@@ -43,7 +43,7 @@ struct GhostEnergy {
 struct VariantFindings {
     std::vector<PassPicture> passes;
     std::vector<GhostEnergy> ghosts;        // the strongest first, where they are asked for
-    std::optional<Estimate> veiling_glare;  // a share
+    std::optional<Estimate> veiling_glare;  // a fraction
     std::vector<ChartFeature> features;     // of the chart, where one is measured
     std::optional<StreakLook> streaks;
     std::vector<PictureGrowth> growth;

@@ -38,7 +38,7 @@ formats::Image shown_part(const StrayScene& scene, formats::Image image) {
     if (scene.crop.empty()) {
         return image;
     }
-    const auto place = [](double share, int size) { return static_cast<int>(std::lround(share * size)); };
+    const auto place = [](double fraction, int size) { return static_cast<int>(std::lround(fraction * size)); };
     const int left = place(scene.crop[0], image.width);
     const int top = place(scene.crop[1], image.height);
     formats::Image part = formats::make_image(std::max(1, place(scene.crop[2], image.width) - left),

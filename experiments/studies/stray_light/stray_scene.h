@@ -52,7 +52,7 @@ struct StrayScene {
     std::map<std::string, double> brightening_ev;  // of a pass's picture
     std::vector<StrayVariant> variants;
     int columns = 0;                   // of the variants side by side
-    std::vector<double> crop;          // left, top, right, bottom of what is shown, shares of the frame; empty: all
+    std::vector<double> crop;          // left, top, right, bottom of what is shown, fractions of the frame; empty: all
     std::optional<double> ghosts_deg;  // the field angle of a distant light whose ghosts are listed
     bool has_veiling_glare = false;
     bool has_audit = false;

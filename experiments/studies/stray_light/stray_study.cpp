@@ -11,8 +11,8 @@ namespace lensproof::studies {
 
 namespace {
 
-std::string percent(const Estimate& share) {
-    return fmt::format("{:.3g} ± {:.1g} %", 100.0 * share.value, 100.0 * share.standard_error);
+std::string percent(const Estimate& fraction) {
+    return fmt::format("{:.3g} ± {:.1g} %", 100.0 * fraction.value, 100.0 * fraction.standard_error);
 }
 
 findings::Subject subject_of(const StrayScene& scene, const StrayVariant& variant, const VariantFindings& found) {
@@ -36,8 +36,8 @@ findings::Subject subject_of(const StrayScene& scene, const StrayVariant& varian
     if (found.veiling_glare) {
         subject.facts.push_back({"veiling glare index", percent(*found.veiling_glare)});
     }
-    for (const auto& [fate, share] : found.fates) {
-        subject.facts.push_back({"light that comes in: " + fate, percent(share)});
+    for (const auto& [fate, fraction] : found.fates) {
+        subject.facts.push_back({"light that comes in: " + fate, percent(fraction)});
     }
     return subject;
 }
@@ -74,9 +74,9 @@ Json variant_json(const StrayVariant& variant, const VariantFindings& found) {
     for (const PictureGrowth& point : found.growth) {
         json["growth"].push_back(to_json(point));
     }
-    for (const auto& [fate, share] : found.fates) {
-        json["energy"][fate + "_percent"] = 100.0 * share.value;
-        json["energy"][fate + "_standard_error_percent"] = 100.0 * share.standard_error;
+    for (const auto& [fate, fraction] : found.fates) {
+        json["energy"][fate + "_percent"] = 100.0 * fraction.value;
+        json["energy"][fate + "_standard_error_percent"] = 100.0 * fraction.standard_error;
     }
     return json;
 }

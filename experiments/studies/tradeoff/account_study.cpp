@@ -206,7 +206,7 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
                         {"probe_seconds", outcome.probe_seconds}});
     }
     const auto planned = static_cast<double>(speed_ups.size());
-    const double share = planned > 0.0 ? kept / planned : std::nan("");
+    const double fraction = planned > 0.0 ? kept / planned : std::nan("");
     std::ranges::sort(speed_ups);
     using Binomial = boost::math::binomial_distribution<>;
     constexpr double kEachSide = 0.025;
@@ -221,8 +221,8 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
          .group = set.title,
          .subject = set.name,
          .label = fmt::format("plans that keep {}", set.stated_tolerance),
-         .value = 100.0 * share,
-         .sigma = 100.0 * std::sqrt(share * (1.0 - share) / planned),
+         .value = 100.0 * fraction,
+         .sigma = 100.0 * std::sqrt(fraction * (1.0 - fraction) / planned),
          .unit = "%",
          .limit = 100.0 * kWanted,
          .expectation = findings::Expectation::at_least,

@@ -29,8 +29,8 @@ Effect shift_effect(const Pilot& pilot, const std::string& name, const std::arra
 /// How a blur of that rms radius, in the scene's pixels, is seen, `px` rms.
 Effect blur_effect(const Pilot& pilot, const std::string& name, const PixelSpread& spread_px, const Measured& px);
 
-/// Light as an even veil, a share of the picture's mean: what is more of it may be seen by so much, with the share's
+/// Light as an even veil, a fraction of the picture's mean: what is more of it may be seen by so much, with its
 /// own error.
-Contribution veil_contribution(const Pilot& pilot, const Measured& share);
+Contribution veil_contribution(const Pilot& pilot, const Measured& fraction);
 
 }  // namespace lensproof::studies

@@ -95,9 +95,9 @@ PictureErrors picture_errors(const std::vector<Image>& model, const std::vector<
     for (std::size_t i = 0; i < model.size(); ++i) {
         add(of_model, model[i], 1.0F / n);
         add(of_reference, reference[i], 1.0F / n);
-        const float share = i < paired ? (i % 2 == 0 ? 0.5F : -0.5F) / static_cast<float>(paired) : 0.0F;
-        add(quarter, model[i], share);
-        add(quarter, reference[i], -share);
+        const float weight = i < paired ? (i % 2 == 0 ? 0.5F : -0.5F) / static_cast<float>(paired) : 0.0F;
+        add(quarter, model[i], weight);
+        add(quarter, reference[i], -weight);
     }
     Image one = formats::make_image(quarter.width, quarter.height, quarter.channels);  // b + (d1 − d2) / 4
     add(one, of_model, 0.5F);

@@ -76,7 +76,7 @@ Pilot::Pictures Pilot::with_pass(const std::string& pass) const {
         const std::uint64_t own = settings_.probe.seed + static_cast<std::uint64_t>(seed);
         const std::vector<render::Render> renders = scene_->render({"imaged", pass}, own, false, false);
         const Image stray = picture(renders.back(), settings_.stray_samples, with.ns_per_sample);
-        const auto straight = static_cast<float>(renders.front().film.light_share);
+        const auto straight = static_cast<float>(renders.front().film.kept_fraction);
         Image& sum = with.rgb[static_cast<std::size_t>(seed)];
         std::ranges::transform(sum.pixels, stray.pixels, sum.pixels.begin(),
                                [&](float light, float more) { return straight * light + more; });

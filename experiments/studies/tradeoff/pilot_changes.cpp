@@ -61,8 +61,8 @@ Vec3d mean_rgb(const Image& picture) {
     return (1.0 / (static_cast<double>(picture.width) * picture.height)) * sum;
 }
 
-Image with_veil(const Image& picture, double share) {
-    const Vec3d veil = share * mean_rgb(picture);
+Image with_veil(const Image& picture, double fraction) {
+    const Vec3d veil = fraction * mean_rgb(picture);
     Image changed = picture;
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {

@@ -38,8 +38,8 @@ formats::Image with_shift(const formats::Image& picture, const PixelShift& shift
 using PixelSpread = std::function<double(int x, int y)>;
 formats::Image with_spread(const formats::Image& picture, const PixelSpread& spread);
 
-/// The mean over a picture of R, G and B; and that share of it added everywhere.
+/// The mean over a picture of R, G and B; and that fraction of it added everywhere.
 Vec3d mean_rgb(const formats::Image& picture);
-formats::Image with_veil(const formats::Image& picture, double share);
+formats::Image with_veil(const formats::Image& picture, double fraction);
 
 }  // namespace lensproof::studies

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "engine/base/input_error.h"
+#include "engine/base/order_statistics.h"
 #include "engine/formats/image/image_json.h"
 #include "engine/render/film/film_image.h"
 #include "engine/render/prepared_scene.h"
@@ -69,8 +70,7 @@ double ns_per_path(const render::Camera& camera, std::uint64_t seed) {
         }
         found.push_back(1e9 * seconds / drawn);
     }
-    std::ranges::nth_element(found, found.begin() + kRuns / 2);
-    return found[kRuns / 2];
+    return median(found);
 }
 
 /// Pictures of a scene, a seed each, and what they cost.

@@ -91,7 +91,7 @@ Measured SmoothLight::lost(double sigma_px) const {
     return root(is_in_points ? beyond(std::max(1.0, sigma)) : least);
 }
 
-Measured PassFilms::share(const Pilot& pilot) const {
+Measured PassFilms::fraction(const Pilot& pilot) const {
     double sum = 0.0;
     double squares = 0.0;
     const std::size_t pixels = rgb[0].pixels.size() / rgb[0].channels.size();

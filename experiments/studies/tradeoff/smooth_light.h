@@ -50,7 +50,7 @@ struct PassFilms {
     void add(const PassFilms& more);
 
     /// Their light over all that goes straight. Its error is what the films differ by, pixel by pixel.
-    [[nodiscard]] Measured share(const Pilot& pilot) const;
+    [[nodiscard]] Measured fraction(const Pilot& pilot) const;
     [[nodiscard]] SmoothLight smoothness(const Pilot& pilot) const;
 };
 

@@ -40,15 +40,15 @@ double axial_ghosts(const optics::TraceLens<double>& lens, const optics::StrayMi
     return straight.transmittance > 0.0 ? sum / straight.transmittance : 0.0;
 }
 
-/// The share of the picture's mean.
+/// The fraction of the picture's mean.
 struct Veil {
-    Measured share;
+    Measured fraction;
     double ns_per_sample = 0.0;  // of the pass that renders it
 };
 
 /// As an even veil over the picture.
 Effect veil_effect(const Pilot& pilot, const std::string& name, const Veil& veil) {
-    return {.name = name, .contribution = veil_contribution(pilot, veil.share), .ns_per_sample = veil.ns_per_sample};
+    return {.name = name, .contribution = veil_contribution(pilot, veil.fraction), .ns_per_sample = veil.ns_per_sample};
 }
 
 /// Of a pass, by a few samples: its light over all that goes straight.
@@ -56,22 +56,23 @@ Veil quick_veil(const Pilot& pilot, const std::string& pass) {
     const Pilot::Pictures with = pilot.with_pass(pass);
     const Measured ev = picture_errors(with.rgb, pilot.full().rgb, pilot.settings().probe.threads).exposure_ev;
     const double gain = std::exp2(ev.value);
-    return {.share = {gain - 1.0, std::numbers::ln2 * gain * ev.standard_error}, .ns_per_sample = with.ns_per_sample};
+    return {.fraction = {gain - 1.0, std::numbers::ln2 * gain * ev.standard_error},
+            .ns_per_sample = with.ns_per_sample};
 }
 
 /// The same, by many where a few do not show it to be within the tolerance.
 Veil veil_of(const Pilot& pilot, const std::string& pass, const Tolerance& tolerance, KeptFilms& films) {
     const Veil quick = quick_veil(pilot, pass);
-    if (keeps(veil_contribution(pilot, quick.share), tolerance)) {
+    if (keeps(veil_contribution(pilot, quick.fraction), tolerance)) {
         return quick;
     }
     const PassFilms& many = films.of(pass, pilot.settings().few_smooth_samples);
-    return {.share = many.share(pilot), .ns_per_sample = many.ns_per_sample};
+    return {.fraction = many.fraction(pilot), .ns_per_sample = many.ns_per_sample};
 }
 
 std::vector<Effect> found_by_passes(const Pilot& pilot, const Tolerance& tolerance, KeptFilms& films) {
     const Veil ghosts = veil_of(pilot, "ghosts", tolerance, films);
-    const double most = ghosts.share.value + 2.0 * ghosts.share.standard_error;
+    const double most = ghosts.fraction.value + 2.0 * ghosts.fraction.standard_error;
     std::vector<Effect> effects = {veil_effect(pilot, "ghosts", ghosts),
                                    veil_effect(pilot, "faint-ghosts", {{most * most, 0.0}, ghosts.ns_per_sample})};
     effects[1].is_bound = true;
@@ -91,11 +92,11 @@ std::vector<Effect> found_by_passes(const Pilot& pilot, const Tolerance& toleran
 /// Where no pass renders it: what pairs of surfaces reflect along the axis, as if all of it fell on the film.
 std::vector<Effect> bounds(const Pilot& pilot, const std::string& no_pass) {
     const optics::Lens& lens = pilot.camera().lens().value();
-    const double share = lens.has_mirrors() ? 0.0
-                                            : axial_ghosts(optics::at_wavelength<double>(lens, spectral::kLineD),
-                                                           pilot.setup().camera.mirrors);
-    std::vector<Effect> effects = {veil_effect(pilot, "ghosts", {{share, 0.0}}),
-                                   veil_effect(pilot, "faint-ghosts", {{share * share, 0.0}}),
+    const double fraction = lens.has_mirrors() ? 0.0
+                                               : axial_ghosts(optics::at_wavelength<double>(lens, spectral::kLineD),
+                                                              pilot.setup().camera.mirrors);
+    std::vector<Effect> effects = {veil_effect(pilot, "ghosts", {{fraction, 0.0}}),
+                                   veil_effect(pilot, "faint-ghosts", {{fraction * fraction, 0.0}}),
                                    {.name = "barrel", .contribution = {}}};
     for (Effect& effect : effects) {
         effect.is_bound = true;
@@ -140,16 +141,16 @@ Contribution airy_core(const Pilot& pilot) {
 
 }  // namespace
 
-Contribution veil_contribution(const Pilot& pilot, const Measured& share) {
+Contribution veil_contribution(const Pilot& pilot, const Measured& fraction) {
     const auto with = [&](double part) {
         std::vector<Image> veiled;
         std::ranges::transform(pilot.full().rgb, std::back_inserter(veiled),
                                [&](const Image& picture) { return with_veil(picture, part); });
         return difference(pilot, veiled);
     };
-    Contribution found = with(share.value);
-    if (share.standard_error > 0.0) {
-        const Contribution more = with(share.value + share.standard_error);
+    Contribution found = with(fraction.value);
+    if (fraction.standard_error > 0.0) {
+        const Contribution more = with(fraction.value + fraction.standard_error);
         const auto widen = [](Measured& part, const Measured& of_more) {
             part.standard_error = std::hypot(part.standard_error, of_more.value - part.value);
         };

@@ -348,7 +348,7 @@ std::string pareto_svg(const std::string& title, const std::vector<MeasuredRung>
                              "drawn at what is known of them",
                          .panels = {},
                          .columns = 3,
-                         .shares_y = false,
+                         .has_common_y = false,
                          .frame = {180.0, 190.0}};
     const std::vector<MeasuredRung> all = applicable(rungs);
     for (const char* key : {"image_rms_px", "exposure_ev", "ciede2000_mean"}) {

@@ -29,7 +29,7 @@ struct Twin {
 
 void fields(JsonArchive& json, Twin& twin);
 
-/// From where on a difference is as red or as blue as it gets, in shares of the chart's contrast.
+/// From where on a difference is as red or as blue as it gets, in fractions of the chart's contrast.
 inline constexpr double kShownDifference = 0.25;
 
 /// Renders the view of that number through the fitted camera, looks for the chart's points in it from where they are

@@ -23,12 +23,12 @@ struct TwinSettings {
     std::vector<std::string> free;            // what may be otherwise in the lens (calibration::kFreeKinds)
     std::string response;                     // of the twin's sensor
     int samples_per_pixel = 64;
-    std::optional<double> limit_px;  // of the lens's share of the displacements; none: kTwinLimitShare
+    std::optional<double> limit_px;  // of the lens's fraction of the displacements; none: kTwinLimitFraction
     Json stated;                     // what pictures follow from
 };
 
-/// A half-diagonal's share that a lens may be off by where nothing is stated: as in [[photographed_lenses]].
-inline constexpr double kTwinLimitShare = 1e-3;
+/// The fraction of a half-diagonal that a lens may be off by where nothing is stated: as in [[photographed_lenses]].
+inline constexpr double kTwinLimitFraction = 1e-3;
 
 /// The lens, fitted to the photos' profile as far as the settings allow: scale and sensor shift always.
 struct FittedTwin {

@@ -61,8 +61,8 @@ TwinSettings read_twins_table(TomlTable& table, findings::ExperimentFile& file) 
     return twins;
 }
 
-std::string percent(double share) {
-    return fmt::format("{:.2g}", 100.0 * share);
+std::string percent(double fraction) {
+    return fmt::format("{:.2g}", 100.0 * fraction);
 }
 
 findings::Picture shown(const TwinSettings& settings, const std::string& file, const Twin& twin) {
@@ -107,9 +107,10 @@ Json picture_json(const std::string& file, const Twin& twin) {
                 {"unexplained", by.unexplained}};
 }
 
-std::string share_text(const calibration::TwinShare& share) {
-    return std::isnan(share.rms_px) ? "not to be told from the lens: fewer than three photos"
-                                    : fmt::format("{:.3f} ± {:.3f} px", share.rms_px, share.standard_error_px);
+std::string displacement_text(const calibration::TwinDisplacement& displacement) {
+    return std::isnan(displacement.rms_px)
+               ? "not to be told from the lens: fewer than three photos"
+               : fmt::format("{:.3f} ± {:.3f} px", displacement.rms_px, displacement.standard_error_px);
 }
 
 Json number_or_null(double value) {
@@ -149,8 +150,8 @@ std::vector<findings::Fact> TwinFindings::facts() const {
     }
     facts.push_back({"points, photos", fmt::format("{}, {}", account.points, account.views)});
     facts.push_back({"photo − twin, rms of a coordinate", fmt::format("{:.3f} px", account.displaced_px)});
-    facts.push_back({"of it the lens", share_text(account.lens)});
-    facts.push_back({"the chart", share_text(account.chart)});
+    facts.push_back({"of it the lens", displacement_text(account.lens)});
+    facts.push_back({"the chart", displacement_text(account.chart)});
     facts.push_back({"what repeats in neither",
                      fmt::format("{:.3f} px, of which the pictures' noise explains {}", account.rest_px,
                                  std::isnan(account.expected_px) ? "what is not known"
@@ -159,7 +160,7 @@ std::vector<findings::Fact> TwinFindings::facts() const {
 }
 
 findings::Check TwinFindings::check() const {
-    const double limit = settings.limit_px.value_or(kTwinLimitShare * half_diagonal_px);
+    const double limit = settings.limit_px.value_or(kTwinLimitFraction * half_diagonal_px);
     return {.id = settings.name + "-lens",
             .group = label + ": photos against their twins",
             .subject = settings.name,

@@ -87,7 +87,7 @@ TEST(DenoisedDifference, KeepsWhatIsMoreThanNoise) {
     const double sigma = 0.03 * std::sqrt(2.0) * std::sqrt(0.2126 * 0.2126 + 0.7152 * 0.7152 + 0.0722 * 0.0722);
     const DenoisedDifference noise = denoised_difference(a, b, whole_frame(a));
     EXPECT_NEAR(noise.noise, sigma, 0.1 * sigma);
-    EXPECT_NEAR(noise.noise_share, 0.9545, 0.02);
+    EXPECT_NEAR(noise.noise_fraction, 0.9545, 0.02);
     for (int y = 40; y < 80; ++y) {
         for (int x = 40; x < 80; ++x) {
             for (int c = 0; c < 3; ++c) {

@@ -75,8 +75,8 @@ TEST(LightSpot, OfAnEvenEllipseHasItsCentreItsAxesAndItsColour) {
     EXPECT_NEAR(spot.angle_deg.value, 25.0, 0.2);
     EXPECT_NEAR(spot.light[0].value, 0.6 * kPi * 15.0 * 11.0, 0.002 * 311.0);
     EXPECT_NEAR(spot.colour_ev(0, 1).value, std::log2(1.5), 0.002);
-    EXPECT_EQ(spot.clipped_share, 0.0);
-    EXPECT_GT(measure_spot(ellipse.picture(80, 76), kBox, 0.5).clipped_share, 0.9);
+    EXPECT_EQ(spot.clipped_fraction, 0.0);
+    EXPECT_GT(measure_spot(ellipse.picture(80, 76), kBox, 0.5).clipped_fraction, 0.9);
 }
 
 // Of 200 pictures 95 % intervals hold the truth, taken from a picture without noise, in 90 to 99 %: a binomial of 0.95

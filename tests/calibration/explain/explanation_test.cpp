@@ -142,13 +142,13 @@ TEST(Explanation, FocusAndScaleCannotBeToldApart) {
     const LensExplanation found = explained(studio, simulated_profile(studio, {{"focus_mm", 0.5}}, 7), "tessar");
     ASSERT_EQ(found.undetermined.size(), 1U);
     const OpenCombination& open = found.undetermined.front();
-    ASSERT_EQ(open.shares.size(), 2U);
+    ASSERT_EQ(open.direction.size(), 2U);
     // Δh / h is Δfocus / 105 mm, the image's distance here, and is taken back by scale: 0.2 mm of focus are 1.9
-    // tolerances of scale, so that the open direction has shares of 1 to 1.9.
-    const auto share = [&](const std::string& name) {
-        return std::ranges::find(open.shares, name, &std::pair<std::string, double>::first)->second;
+    // tolerances of scale, so that the open direction has components of 1 to 1.9.
+    const auto component = [&](const std::string& name) {
+        return std::ranges::find(open.direction, name, &std::pair<std::string, double>::first)->second;
     };
-    EXPECT_NEAR(share("focus_mm") / share("scale"), -0.53, 0.06);
+    EXPECT_NEAR(component("focus_mm") / component("scale"), -0.53, 0.06);
     EXPECT_FALSE(parameter(found, "scale").determined);
 }
 

@@ -78,9 +78,9 @@ TEST(LineDistortion, ItsIntervalsHoldTheTruth) {
             held += own_held;
         }
     }
-    const double share = static_cast<double>(held) / told;
-    EXPECT_GE(share, 0.90);
-    EXPECT_LE(share, 0.99);
+    const double fraction = static_cast<double>(held) / told;
+    EXPECT_GE(fraction, 0.90);
+    EXPECT_LE(fraction, 0.99);
 }
 
 std::vector<SceneLine> random_arcs(int count, unsigned seed) {
@@ -174,9 +174,10 @@ TEST(LineDistortion, SaysWhatIsMissing) {
     Noise noise(1);
     std::vector<SceneLine> spokes;
     for (int i = 0; i < 12; ++i) {
-        const Vec3d way{std::cos(i * kPi / 12), std::sin(i * kPi / 12), 0.0};
+        const Vec3d direction{std::cos(i * kPi / 12), std::sin(i * kPi / 12), 0.0};
         spokes.push_back(*seen_line(BrownConrady{{820.0, 319.5, 239.5, -0.24, 0.09, 0.0, 0.0, 0.0}}, kWidth, kHeight,
-                                    Vec3d{0, 0, 1} - 0.6 * way, Vec3d{0, 0, 1} + 0.6 * way, {.white_px = 0.2}, noise));
+                                    Vec3d{0, 0, 1} - 0.6 * direction, Vec3d{0, 0, 1} + 0.6 * direction,
+                                    {.white_px = 0.2}, noise));
     }
     EXPECT_TRUE(says(refusal(spokes), "lines through the middle do not bend"));
 

@@ -279,9 +279,9 @@ TEST(CalibrationBands, NarrowBandPhotographsShiftAsTheirManifestSays) {
             const Vec2d to = middle_of_the_dark(other_colour, *place, reach);
             const Vec2d shifts[2] = {{place->x - disc.centre_px.x, place->y - disc.centre_px.y},
                                      {to.x - from.x, to.y - from.y}};
-            for (int way = 0; way < 2; ++way) {
-                radial[way].push_back((shifts[way].x * q.x + shifts[way].y * q.y) / radius);
-                tangential[way].push_back((shifts[way].y * q.x - shifts[way].x * q.y) / radius);
+            for (int method = 0; method < 2; ++method) {
+                radial[method].push_back((shifts[method].x * q.x + shifts[method].y * q.y) / radius);
+                tangential[method].push_back((shifts[method].y * q.x - shifts[method].x * q.y) / radius);
             }
         }
         const Mean own = mean_of(radial[0]);

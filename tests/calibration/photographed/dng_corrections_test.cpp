@@ -81,13 +81,13 @@ TEST(DngCorrections, ImageWhereTheSpecificationTakesPixelsFrom) {
     }
     ASSERT_EQ(lens.vignetting.size(), 1U);
     EXPECT_EQ(lens.vignetting[0].f_number, 8.0);
-    for (const double share : {0.0, 0.4, 1.0}) {
-        const double r = share * 0.5 * std::hypot(6000.0, 4000.0) / specified.m;
+    for (const double fraction : {0.0, 0.4, 1.0}) {
+        const double r = fraction * 0.5 * std::hypot(6000.0, 4000.0) / specified.m;
         double gain = 1.0;
         for (int i = 0; i < 5; ++i) {
             gain += kGain[static_cast<std::size_t>(i)] * std::pow(r, 2 * (i + 1));
         }
-        EXPECT_NEAR(lens.vignetting[0].brightness(share) * gain, 1.0, 1e-14);
+        EXPECT_NEAR(lens.vignetting[0].brightness(fraction) * gain, 1.0, 1e-14);
     }
 }
 

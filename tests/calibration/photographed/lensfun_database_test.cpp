@@ -113,13 +113,13 @@ TEST(LensfunDatabase, IsWhatTheLibraryAppliesToPictures) {
         ASSERT_EQ(lens.vignetting.size(), 2U);  // by aperture, the farther focus
         ASSERT_TRUE(lens.lateral_colour);
         const Library library(entry, lens);
-        for (const double share : {0.1, 0.4, 0.7}) {  // of the half-diagonal: 0.8 is the end of the longer side
-            const double at = share * lens.half_diagonal_mm();
+        for (const double fraction : {0.1, 0.4, 0.7}) {  // of the half-diagonal: 0.8 is the end of the longer side
+            const double at = fraction * lens.half_diagonal_mm();
             EXPECT_NEAR(photographed_radius(lens, at), library.radius(at), kFloat_mm);
             const auto [red, blue] = library.channels(at);
             EXPECT_NEAR(at + channel_shift(lens, lens.lateral_colour->red, at), red, kFloat_mm);
             EXPECT_NEAR(at + channel_shift(lens, lens.lateral_colour->blue, at), blue, kFloat_mm);
-            EXPECT_NEAR(lens.vignetting.front().brightness(share), library.brightness(at), 1e-3);
+            EXPECT_NEAR(lens.vignetting.front().brightness(fraction), library.brightness(at), 1e-3);
         }
     }
 }

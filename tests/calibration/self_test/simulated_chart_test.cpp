@@ -56,8 +56,8 @@ TEST(SimulatedChart, AnEdgeIsTheIntegralOfTheBlur) {
     }
 }
 
-// Without blur, the share of a pixel beyond a turned edge is its area there. 64 places of which no two share a row or
-// column: an edge that is nearly along one of them is known to 1/64. One that is turned leaves a row through two or
+// Without blur, the fraction of a pixel beyond a turned edge is its area there. 64 places of which no two share a row
+// or column: an edge that is nearly along one of them is known to 1/64. One that is turned leaves a row through two or
 // three pixels, each off by that much. Errors of 41 rows average out to a few thousandths.
 TEST(SimulatedChart, ATurnedEdgeLiesWhereItShould) {
     for (const double turn : {0.0, 0.02, 0.1, 0.3, 0.7}) {

@@ -73,8 +73,8 @@ inline formats::Image paint_edge(const EdgePicture& edge, const Blur& blur, int 
                 const double along = -dx * std::sin(a) + dy * std::cos(a);
                 sum += blur.edge_spread(dx * std::cos(a) + dy * std::sin(a) - 0.5 * edge.curvature * along * along);
             }
-            const double share = sum / (4.0 * n * n);
-            image.at(x, y, 0) = static_cast<float>(std::lerp(edge.dark, edge.bright, share) *
+            const double fraction = sum / (4.0 * n * n);
+            image.at(x, y, 0) = static_cast<float>(std::lerp(edge.dark, edge.bright, fraction) *
                                                    edge.light({static_cast<double>(x), static_cast<double>(y)}));
         }
     }

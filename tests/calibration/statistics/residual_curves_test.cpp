@@ -34,7 +34,7 @@ Vec2d noise(const Vec2d&, std::mt19937_64& random) {
     return {x, normal(random)};
 }
 
-/// The share of samples whose 95 % bounds hold what `expected` says there.
+/// The fraction of samples whose 95 % bounds hold what `expected` says there.
 template <class Expected>
 double held(const Curve& curve, const Expected& expected) {
     double inside = 0.0;

@@ -101,10 +101,10 @@ TEST(Ghosts, PlateSendsItsGhostStraightOn) {
     EXPECT_NEAR(light.peak * std::numbers::pi * 64.0, light.energy, 0.1 * light.energy);
     // Either surface coated, the ghost is gone.
     ASSERT_EQ(survey.surfaces.size(), 2U);
-    for (const SurfaceShare& share : survey.surfaces) {
-        EXPECT_NEAR(share.perfect, 1.0, 1e-12);
-        EXPECT_NEAR(share.involved, 1.0, 1e-12);
-        EXPECT_GT(share.quarter_wave.value(), 0.5);  // R falls from 6.7 % to 0.4 %
+    for (const SurfaceContribution& contribution : survey.surfaces) {
+        EXPECT_NEAR(contribution.perfect, 1.0, 1e-12);
+        EXPECT_NEAR(contribution.involved, 1.0, 1e-12);
+        EXPECT_GT(contribution.quarter_wave.value(), 0.5);  // R falls from 6.7 % to 0.4 %
     }
 }
 
@@ -257,10 +257,10 @@ TEST(Ghosts, AgreeWithReflectionsLeftToChance) {
         const GhostScene scene = ghost_scene(lens, settings, kWavelength);
         constexpr int kRays = 150'000;
         auto landings = Judge(scene, 7).land(kRays);
-        const double share = scene.beam.area() / kRays / scene.pupil_area;
+        const double ray_weight = scene.beam.area() / kRays / scene.pupil_area;
         const auto expect_agreement = [&](const GhostLight& light, const Seen& seen) {
-            EXPECT_NEAR(light.energy, share * seen.sum,
-                        4.0 * std::hypot(share * std::sqrt(seen.squares), light.standard_error));
+            EXPECT_NEAR(light.energy, ray_weight * seen.sum,
+                        4.0 * std::hypot(ray_weight * std::sqrt(seen.squares), light.standard_error));
         };
         expect_agreement(survey.image, landings[{}]);
         int compared = 0;
@@ -280,8 +280,9 @@ TEST(Ghosts, AgreeWithReflectionsLeftToChance) {
         }
         EXPECT_GE(compared, 10);
         EXPECT_GT(all.count, 2000);
-        EXPECT_NEAR(survey.energy, share * all.sum, 4.0 * std::sqrt(share * share * all.squares + variance));
-        EXPECT_LT(share * std::sqrt(all.squares), 0.05 * survey.energy);  // what the judge can tell
+        EXPECT_NEAR(survey.energy, ray_weight * all.sum,
+                    4.0 * std::sqrt(ray_weight * ray_weight * all.squares + variance));
+        EXPECT_LT(ray_weight * std::sqrt(all.squares), 0.05 * survey.energy);  // what the judge can tell
     }
 }
 
@@ -380,17 +381,18 @@ TEST(Ghosts, CoatingASurfaceDoesWhatTheSurveySaid) {
     GhostSettings settings = settings_for(lens, 5.0);
     settings.sampling.rays = 4000;
     const GhostSurvey survey = survey_ghosts(lens, settings);
-    for (const SurfaceShare& share : {survey.surfaces.front(), survey.surfaces.back()}) {
+    for (const SurfaceContribution& contribution : {survey.surfaces.front(), survey.surfaces.back()}) {
         optics::Prescription coated = bare;
         coated.coatings["perfect"] = std::vector<optics::WavelengthValue>{{.wavelength_nm = kWavelength, .value = 0.0}};
         coated.coatings["mgf2"] = optics::LayerStack{
             .layers = {{.index = {{.wavelength_nm = 550.0, .value = 1.38}}, .thickness_nm = 550.0 / 4 / 1.38}}};
-        for (const auto& [name, gone] : {std::pair{"perfect", share.perfect}, {"mgf2", share.quarter_wave.value()}}) {
-            coated.surfaces[static_cast<std::size_t>(share.surface)].coating = name;
+        for (const auto& [name, gone] :
+             {std::pair{"perfect", contribution.perfect}, {"mgf2", contribution.quarter_wave.value()}}) {
+            coated.surfaces[static_cast<std::size_t>(contribution.surface)].coating = name;
             const optics::Lens with = optics::make_lens(coated, {});
             const GhostSurvey left = survey_ghosts(with, settings);
             // 200 rays a ghost weigh what a coating does, which depends little on where a ray runs.
-            EXPECT_NEAR(1.0 - left.energy / survey.energy, gone, 0.01) << name << " on " << share.surface + 1;
+            EXPECT_NEAR(1.0 - left.energy / survey.energy, gone, 0.01) << name << " on " << contribution.surface + 1;
         }
     }
 }
@@ -424,8 +426,8 @@ std::vector<double> numbers_of(const GhostSurvey& survey) {
             numbers.push_back(number);
         }
     }
-    for (const SurfaceShare& share : survey.surfaces) {
-        numbers.push_back(share.perfect);
+    for (const SurfaceContribution& contribution : survey.surfaces) {
+        numbers.push_back(contribution.perfect);
     }
     return numbers;
 }

@@ -30,11 +30,11 @@ TEST(VeilingGlare, PlateGivesWhatItsReflectanceSays) {
     const VeilingGlare glare = veiling_glare(
         optics::make_lens(prescription, {}),
         {.wavelength_nm = kWavelength, .spot_angle = std::atan(std::sqrt(0.5) / 50.0), .paths = 100'000, .threads = 1});
-    EXPECT_NEAR(glare.ghosts.share, 0.5 * r2, 4.0 * glare.ghosts.standard_error);
+    EXPECT_NEAR(glare.ghosts.fraction, 0.5 * r2, 4.0 * glare.ghosts.standard_error);
     EXPECT_LT(glare.ghosts.standard_error, 0.05 * r2);
-    EXPECT_NEAR(glare.blur.share, 0.5 * (1.0 - r2), 4.0 * glare.blur.standard_error + 5e-4);
-    EXPECT_EQ(glare.barrel.share, 0.0);
-    EXPECT_NEAR(glare.index.share, glare.ghosts.share + glare.blur.share, 1e-12);
+    EXPECT_NEAR(glare.blur.fraction, 0.5 * (1.0 - r2), 4.0 * glare.blur.standard_error + 5e-4);
+    EXPECT_EQ(glare.barrel.fraction, 0.0);
+    EXPECT_NEAR(glare.index.fraction, glare.ghosts.fraction + glare.blur.fraction, 1e-12);
     const double even = std::numbers::pi * std::pow(std::sin(std::atan(1.0 / 50.0)), 2) * (1.0 - 1.0 / 9.0) /
                         (1.0 + 1.0 / 9.0);  // π sin² u (1 − R) / (1 + R)
     EXPECT_NEAR(glare.irradiance, even, 0.01 * even);
@@ -70,10 +70,10 @@ TEST(VeilingGlare, PolarisationOfASlantedPlate) {
     const PolarisedGlare& polarised = *glare.polarised;
     EXPECT_GT(carried, 1.2 * averaged);
     EXPECT_LT(polarised.ghosts.standard_error, 0.05 * carried);
-    EXPECT_NEAR(glare.ghosts.share, 0.5 * averaged, 4.0 * glare.ghosts.standard_error);
-    EXPECT_NEAR(polarised.ghosts.share, 0.5 * carried, 4.0 * polarised.ghosts.standard_error);
-    EXPECT_NEAR(polarised.index.share, polarised.ghosts.share + polarised.blur.share, 1e-12);
-    EXPECT_NEAR(polarised.difference.share, polarised.index.share - glare.index.share, 1e-12);
+    EXPECT_NEAR(glare.ghosts.fraction, 0.5 * averaged, 4.0 * glare.ghosts.standard_error);
+    EXPECT_NEAR(polarised.ghosts.fraction, 0.5 * carried, 4.0 * polarised.ghosts.standard_error);
+    EXPECT_NEAR(polarised.index.fraction, polarised.ghosts.fraction + polarised.blur.fraction, 1e-12);
+    EXPECT_NEAR(polarised.difference.fraction, polarised.index.fraction - glare.index.fraction, 1e-12);
     EXPECT_LT(polarised.difference.standard_error, polarised.index.standard_error);
 }
 
@@ -141,13 +141,13 @@ TEST(VeilingGlare, GhostsAreThoseOfAllPairsAndMore) {
             landed += is_ghost ? 1 : 0;
         }
     }
-    const double share = by_chance / straight;
-    EXPECT_NEAR(share, pairs / image, (4.0 / std::sqrt(landed) + 0.02) * share);  // 3000 rays know 2 % of pairs
+    const double fraction = by_chance / straight;
+    EXPECT_NEAR(fraction, pairs / image, (4.0 / std::sqrt(landed) + 0.02) * fraction);  // 3000 rays know 2 % of pairs
     const VeilingGlare glare =
         veiling_glare(lens, {.wavelength_nm = kWavelength, .spot_angle = spot, .paths = 200'000, .threads = 1});
-    EXPECT_GT(glare.ghosts.share, share / (1.0 + 2.0 * share));
-    EXPECT_LT(glare.ghosts.share, 2.0 * share);
-    EXPECT_EQ(glare.blur.share, 0.0);
+    EXPECT_GT(glare.ghosts.fraction, fraction / (1.0 + 2.0 * fraction));
+    EXPECT_LT(glare.ghosts.fraction, 2.0 * fraction);
+    EXPECT_EQ(glare.blur.fraction, 0.0);
 }
 
 // Walls add light, and leave the ghosts as they are; a sensor that is a mirror adds ghosts. Nothing depends on threads.
@@ -159,24 +159,24 @@ TEST(VeilingGlare, WallsAndSensorAddTheirs) {
     lens.barrel.tube = lens.barrel.edges = lens.barrel.blades = {.albedo = 0.2};
     const VeilingGlare grey = veiling_glare(lens, settings);
     settings.threads = 2;
-    EXPECT_EQ(veiling_glare(lens, settings).index.share, grey.index.share);
+    EXPECT_EQ(veiling_glare(lens, settings).index.fraction, grey.index.fraction);
     lens.barrel.tube.albedo = lens.barrel.edges.albedo = lens.barrel.blades.albedo = 0.4;
     settings.mirrors.sensor = 1.0;
     const VeilingGlare bright = veiling_glare(lens, settings);
-    EXPECT_EQ(black.barrel.share, 0.0);
-    EXPECT_GT(grey.barrel.share, 10.0 * grey.barrel.standard_error);
-    EXPECT_GT(bright.barrel.share, 1.5 * grey.barrel.share);
+    EXPECT_EQ(black.barrel.fraction, 0.0);
+    EXPECT_GT(grey.barrel.fraction, 10.0 * grey.barrel.standard_error);
+    EXPECT_GT(bright.barrel.fraction, 1.5 * grey.barrel.fraction);
     settings.polarised = true;
     settings.mirrors.sensor = 0.0;
     lens.barrel.tube.albedo = lens.barrel.edges.albedo = lens.barrel.blades.albedo = 0.2;
     const VeilingGlare polarised = veiling_glare(lens, settings);  // on the same paths
-    EXPECT_EQ(polarised.index.share, grey.index.share);
-    EXPECT_EQ(polarised.barrel.share, grey.barrel.share);
-    EXPECT_NEAR(polarised.polarised->barrel.share, grey.barrel.share, 0.2 * grey.barrel.share);
-    EXPECT_NEAR(grey.ghosts.share, black.ghosts.share,
+    EXPECT_EQ(polarised.index.fraction, grey.index.fraction);
+    EXPECT_EQ(polarised.barrel.fraction, grey.barrel.fraction);
+    EXPECT_NEAR(polarised.polarised->barrel.fraction, grey.barrel.fraction, 0.2 * grey.barrel.fraction);
+    EXPECT_NEAR(grey.ghosts.fraction, black.ghosts.fraction,
                 4.0 * std::hypot(grey.ghosts.standard_error, black.ghosts.standard_error));
-    EXPECT_GT(bright.ghosts.share,
-              black.ghosts.share + 3.0 * std::hypot(bright.ghosts.standard_error, black.ghosts.standard_error));
+    EXPECT_GT(bright.ghosts.fraction,
+              black.ghosts.fraction + 3.0 * std::hypot(bright.ghosts.standard_error, black.ghosts.standard_error));
 }
 
 TEST(VeilingGlare, NeedsAFocalLength) {

@@ -73,11 +73,11 @@ TEST(WallFinish, WhiteWallsKeepEvenLightEven) {
     }
 }
 
-// A rough mirror's two directions may be exchanged: of light from one slant the share that leaves into a cone about
+// A rough mirror's two directions may be exchanged: of light from one slant the fraction that leaves into a cone about
 // another, over that cone's cosines, is as large the other way round.
 TEST(WallFinish, RoughMirrorsAreReciprocal) {
     const WallFinish finish{.albedo = 1.0, .gloss = 1.0, .roughness = 0.5};
-    const auto share = [&](double from, double to) {  // both directions by their cosine, opposite each other
+    const auto fraction = [&](double from, double to) {  // both directions by their cosine, opposite each other
         Numbers numbers(5);
         const Vec3d in{std::sqrt(1.0 - from * from), 0.0, -from};
         const Vec3d towards{std::sqrt(1.0 - to * to), 0.0, to};
@@ -88,8 +88,8 @@ TEST(WallFinish, RoughMirrorsAreReciprocal) {
         }
         return found;
     };
-    const Mean there = share(0.3, 0.8);
-    const Mean back = share(0.8, 0.3);
+    const Mean there = fraction(0.3, 0.8);
+    const Mean back = fraction(0.8, 0.3);
     // The cones are 8° wide: the mean of what is reciprocal over them differs by a few percent.
     EXPECT_NEAR(there.mean(), back.mean(), 4.0 * std::hypot(there.error(), back.error()) + 0.04 * there.mean());
 }
@@ -114,7 +114,7 @@ Lens tube(double length, double front_radius, double rear_radius, const WallFini
     return make_lens(prescription, {});
 }
 
-/// The share of light, even over an end and by Lambert's law, that leaves at the other.
+/// The fraction of light, even over an end and by Lambert's law, that leaves at the other.
 Mean transmission(const Lens& lens, bool forward, int rays) {
     const TraceLens<double> at = at_wavelength<double>(lens, kWavelength);
     const Barrel barrel(lens);
@@ -146,7 +146,7 @@ TEST(Barrel, WhiteTubePassesWhatClausingSays) {
     }
 }
 
-// Even light on both ends of a cone stays in balance: area times share is the same both ways, from paint and from
+// Even light on both ends of a cone stays in balance: area times fraction is the same both ways, from paint and from
 // gloss.
 TEST(Barrel, ConesPassAlikeBothWays) {
     for (const WallFinish& walls : {kWhite, kGlossyWhite}) {
@@ -187,7 +187,7 @@ FrontDust dust(double albedo, double through) {
             .through = through};
 }
 
-struct Shares {
+struct Fractions {
     Mean image;
     Mean ghosts;
     Mean barrel;
@@ -202,14 +202,14 @@ struct Shares {
 
 /// Even light over the flat front, which lands on a disc of the sensor's plane; or over that disc, which leaves at the
 /// front: the flux of radiance 1, over π.
-Shares exchanged(const Lens& lens, double film_radius, bool forward, int rays) {
+Fractions exchanged(const Lens& lens, double film_radius, bool forward, int rays) {
     const TraceLens<double> at = at_wavelength<double>(lens, kWavelength);
     const Barrel barrel(lens);
     const StrayMirrors<double> mirrors{.sensor = 0.8};
     Numbers numbers(forward ? 11 : 12);
     const double radius = forward ? lens.surfaces.front().semi_diameter : film_radius;
     const double area = kPi * radius * radius;
-    Shares shares;
+    Fractions fractions;
     for (int i = 0; i < rays; ++i) {
         const Vec2d place = numbers.on_disc(radius);
         Vec3d direction = lambert_direction(numbers(), numbers());
@@ -219,24 +219,24 @@ Shares exchanged(const Lens& lens, double film_radius, bool forward, int rays) {
         bool counts = false;
         const auto landed = [&](const StrayLight& on_film) {
             if (forward && std::hypot(on_film.ray.origin.x, on_film.ray.origin.y) <= film_radius) {
-                shares.add(on_film, area * on_film.weight);
+                fractions.add(on_film, area * on_film.weight);
                 counts = true;
             }
         };
         const StrayEnd ended = walk.follow(light, forward, landed);
         if (!forward && ended == StrayEnd::front) {
-            shares.add(light, area * light.weight);
+            fractions.add(light, area * light.weight);
         } else if (!counts) {
-            shares.add(light, 0.0);
+            fractions.add(light, 0.0);
         }
     }
-    for (Mean* mean : {&shares.image, &shares.ghosts, &shares.barrel}) {
+    for (Mean* mean : {&fractions.image, &fractions.ghosts, &fractions.barrel}) {
         mean->count = rays;  // light that a mirror brings to the sensor twice counts twice, of one ray
     }
-    return shares;
+    return fractions;
 }
 
-void expect_alike(const Shares& there, const Shares& back) {
+void expect_alike(const Fractions& there, const Fractions& back) {
     for (const auto& [name, one, other] : {std::tuple{"image", there.image, back.image},
                                            {"ghosts", there.ghosts, back.ghosts},
                                            {"walls and dust", there.barrel, back.barrel}}) {
@@ -290,7 +290,7 @@ TEST(StrayWalk, NothingIsLostInAWhiteLens) {
 
 // Black walls leave the image and the ghosts: nothing that lands met one.
 TEST(StrayWalk, BlackWallsEndEveryPath) {
-    const Shares there = exchanged(stepped_lens({}), 6.0, true, 20'000);
+    const Fractions there = exchanged(stepped_lens({}), 6.0, true, 20'000);
     EXPECT_GT(there.image.sum, 0.0);
     EXPECT_GT(there.ghosts.sum, 0.0);
     EXPECT_EQ(there.barrel.sum, 0.0);

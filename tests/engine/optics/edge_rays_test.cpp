@@ -97,8 +97,8 @@ TEST(StopMask, WalksAlongItsEdges) {
 }
 
 /// What falls beyond angles of a far field, of a million rays straight through the opening.
-std::vector<double> shares_beyond(const StopMask& mask, double semi_diameter, double wavelength,
-                                  const std::vector<double>& angles) {
+std::vector<double> fractions_beyond(const StopMask& mask, double semi_diameter, double wavelength,
+                                     const std::vector<double>& angles) {
     const StopPlane stop{&mask, semi_diameter, 2 * pi / wavelength};
     const EdgeZone zone{.width = 0.05, .deflections = {angles.front(), 0.5}};
     std::mt19937_64 random(1);
@@ -149,19 +149,21 @@ double wave_beyond(const std::vector<Vec2d>& polygon, double semi_diameter, doub
     return 1.0 - within / (4 * pi * pi * area);
 }
 
-// At f/8 and f/22 of a 50 mm lens, from 5 to 100 λN: the wave's share beyond 5 λN within 5 %, which oscillates there by
-// as much, and beyond 20 λN within 3 %. (A million rays leave 0.7 %.)
+// At f/8 and f/22 of a 50 mm lens, from 5 to 100 λN: the wave's fraction beyond 5 λN within 5 %, which oscillates there
+// by as much, and beyond 20 λN within 3 %. (A million rays leave 0.7 %.)
 TEST(EdgeRays, LandWhereTheWaveDoes) {
     const double wavelength = 550e-6;
     for (const double f_number : {8.0, 22.0}) {
         const double semi_diameter = 25.0 / f_number;
         const auto angle_of = [&](double airy) { return airy * wavelength * f_number / 50.0; };
         for (const int count : {5, 6, 8, 9}) {
-            const auto shares =
-                shares_beyond(blades(count), semi_diameter, wavelength, {angle_of(5), angle_of(20), angle_of(100)});
+            const auto fractions =
+                fractions_beyond(blades(count), semi_diameter, wavelength, {angle_of(5), angle_of(20), angle_of(100)});
             const std::vector<Vec2d> polygon = corners(count);
-            EXPECT_NEAR(shares[0] / wave_beyond(polygon, semi_diameter, wavelength, angle_of(5)), 1.0, 0.05) << count;
-            EXPECT_NEAR(shares[1] / wave_beyond(polygon, semi_diameter, wavelength, angle_of(20)), 1.0, 0.03) << count;
+            EXPECT_NEAR(fractions[0] / wave_beyond(polygon, semi_diameter, wavelength, angle_of(5)), 1.0, 0.05)
+                << count;
+            EXPECT_NEAR(fractions[1] / wave_beyond(polygon, semi_diameter, wavelength, angle_of(20)), 1.0, 0.03)
+                << count;
         }
     }
 }
@@ -172,19 +174,20 @@ TEST(EdgeRays, OfACircleAreAirysTail) {
     const double semi_diameter = 50.0 / 16.0;
     const StopMask circle;
     const auto angle_of = [&](double airy) { return airy * wavelength * 8.0 / 50.0; };
-    const auto shares = shares_beyond(circle, semi_diameter, wavelength, {angle_of(5), angle_of(20), angle_of(100)});
+    const auto fractions =
+        fractions_beyond(circle, semi_diameter, wavelength, {angle_of(5), angle_of(20), angle_of(100)});
     const auto airy_beyond = [&](double airy) {
         const double x = pi * airy;  // k a sin θ = π r / (λ N)
         return std::cyl_bessel_j(0, x) * std::cyl_bessel_j(0, x) + std::cyl_bessel_j(1, x) * std::cyl_bessel_j(1, x);
     };
     EXPECT_NEAR(airy_beyond(5), 0.03926, 5e-6);
-    EXPECT_NEAR(shares[0] / airy_beyond(5), 1.0, 0.05);
-    EXPECT_NEAR(shares[1] / airy_beyond(20), 1.0, 0.03);
-    const double slope = std::log(shares[2] / shares[0]) / std::log(20.0);
+    EXPECT_NEAR(fractions[0] / airy_beyond(5), 1.0, 0.05);
+    EXPECT_NEAR(fractions[1] / airy_beyond(20), 1.0, 0.03);
+    const double slope = std::log(fractions[2] / fractions[0]) / std::log(20.0);
     EXPECT_NEAR(slope, -1.0, 0.05);
     const StopPlane stop{&circle, semi_diameter, 2 * pi / wavelength};
-    EXPECT_NEAR(diffracted_share(stop, angle_of(5)), 0.04053, 5e-6);
-    EXPECT_NEAR(shares[0] / diffracted_share(stop, angle_of(5)), 1.0, 0.02);
+    EXPECT_NEAR(diffracted_fraction(stop, angle_of(5)), 0.04053, 5e-6);
+    EXPECT_NEAR(fractions[0] / diffracted_fraction(stop, angle_of(5)), 1.0, 0.02);
 }
 
 // Of straight blades all rays leave at right angles to an edge, two streaks for each blade where they are odd in

@@ -68,9 +68,9 @@ TEST(GhostPath, PlateShiftsByWholeReturns) {
             EXPECT_NEAR(out.ray.direction.y, std::sin(incidence), 20 * kUlp);
             EXPECT_NEAR(out.ray.direction.z, std::cos(incidence), 20 * kUlp * kIndex * kIndex / std::cos(incidence));
             EXPECT_NEAR(out.optical_path, 5.0 + kIndex * passages * kThickness / cos_inside, 4 * tolerance);
-            const auto share = [&](double a, double b) { return std::pow((a - b) / (a + b), 2); };
-            const double s = share(std::cos(incidence), kIndex * cos_inside);
-            const double p = share(kIndex * std::cos(incidence), cos_inside);
+            const auto reflectance = [&](double a, double b) { return std::pow((a - b) / (a + b), 2); };
+            const double s = reflectance(std::cos(incidence), kIndex * cos_inside);
+            const double p = reflectance(kIndex * std::cos(incidence), cos_inside);
             const double r = 0.5 * (s + p);  // unpolarised at every surface
             EXPECT_NEAR(out.transmittance, std::pow(r, path.size()) * std::pow(1.0 - r, 2), 1e-14);
         }

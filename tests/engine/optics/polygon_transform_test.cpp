@@ -52,9 +52,9 @@ TEST(PolygonTransform, OfAMovedPolygonIsTurnedInPhase) {
                 0.0, 1e-14);
 }
 
-// Beyond k the far field has the share P / (π A k), whatever the shape (perimeter, area): P λ f / (2π² A r) in a focal
-// plane. By a sum over the ring between k and 2k, whose share tends to half of that; what oscillates with k is averaged
-// over the ring but for some 1/k of it.
+// Beyond k the far field has the fraction P / (π A k), whatever the shape (perimeter, area): P λ f / (2π² A r) in a
+// focal plane. By a sum over the ring between k and 2k, whose share tends to half of that; what oscillates with k is
+// averaged over the ring but for some 1/k of it.
 TEST(PolygonTransform, FallsOffAsItsPerimeterSays) {
     for (const int corners : {3, 5, 6, 8}) {
         const std::vector<Vec2d> polygon = regular(corners);
@@ -73,8 +73,8 @@ TEST(PolygonTransform, FallsOffAsItsPerimeterSays) {
             }
             sum += ring * k * (kFrom / kRadii) * (2 * pi / angles);
         }
-        const double share = sum / (4 * pi * pi * area);
-        EXPECT_NEAR(share / (0.5 * perimeter / (pi * area * kFrom)), 1.0, 1.0 / kFrom) << corners;
+        const double fraction = sum / (4 * pi * pi * area);
+        EXPECT_NEAR(fraction / (0.5 * perimeter / (pi * area * kFrom)), 1.0, 1.0 / kFrom) << corners;
     }
 }
 

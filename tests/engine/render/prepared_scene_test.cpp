@@ -140,16 +140,16 @@ TEST(PreparedScene, GhostsAreTheSameWithoutASearch) {
 
 // What the edges of the stop turn aside is missing where light goes straight, whatever model brings it there.
 TEST(PreparedScene, WhatIsDiffractedIsMissingInAnyModelsImage) {
-    const auto straight_share = [](const std::string& model, const std::string& render = {}) {
+    const auto straight_fraction = [](const std::string& model, const std::string& render = {}) {
         PreparedScene scene(under_a_sun("[camera]\nlens = \"tessar\"\n" + model, render), PixelFilter{}, Cache());
         const std::vector<Render> renders = scene.render({"imaged", "diffracted"}, 1, false);
-        return renders.front().film.light_share;
+        return renders.front().film.kept_fraction;
     };
-    const double exact = straight_share("");
+    const double exact = straight_fraction("");
     EXPECT_LT(exact, 1.0);
     // Of a circle 2/(π² x) are beyond x λN (DiffractedLight.LeavesTheRestToTheImage).
-    EXPECT_NEAR(straight_share("", "diffracted_from_airy = 5.0\n"), 1.0 - 2.0 / (kPi * kPi * 5.0), 1e-12);
-    EXPECT_EQ(straight_share("model = \"thin-lens\"\n"), exact);
+    EXPECT_NEAR(straight_fraction("", "diffracted_from_airy = 5.0\n"), 1.0 - 2.0 / (kPi * kPi * 5.0), 1e-12);
+    EXPECT_EQ(straight_fraction("model = \"thin-lens\"\n"), exact);
 }
 
 // A light where the lens is would shine through glass and blades as if they were not there. One just in front of the

@@ -217,7 +217,7 @@ TEST(ChartGrid, PanelsShareScalesAndOneLegend) {
     // Numbers of y at the two panels of the first column only, all on the widest panel's scale.
     EXPECT_EQ(count(svg, ">\u221240</text>"), 2U);
     std::vector<PlotChart> charts = grid.panels;
-    share_y_range(charts);
+    unite_y_ranges(charts);
     for (const PlotChart& chart : charts) {
         EXPECT_EQ(chart.y.low, -40.0);
         EXPECT_EQ(chart.y.high, 40.0);

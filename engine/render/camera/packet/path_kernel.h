@@ -151,7 +151,7 @@ FilmArrival<Numbers> arrivals(const Sensor& sensor, const FilmMeetings& meetings
 }
 
 template <class Abi>
-[[gnu::flatten]] void share_rays(const Sensor& sensor, SharedPaths& paths) {
+[[gnu::flatten]] void trace_shared(const Sensor& sensor, SharedPaths& paths) {
     using Numbers = Pack<double, Abi>;
     for (int i = 0; i < paths.size; i += Numbers::kLanes) {
         const Numbers hero_pdf = Numbers(1.0) / Numbers::load(paths.hero_etendue.data() + i);
@@ -178,7 +178,7 @@ PathKernels path_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
             .cross_film = cross_film_with<Abi, double>,
             .cross_film_in_float = cross_film_with<Abi, float>,
             .weigh_pupil_points = weigh_pupil_points<Abi>,
-            .share_rays = share_rays<Abi>};
+            .trace_shared = trace_shared<Abi>};
 }
 
 }  // namespace lensproof::render

@@ -32,7 +32,7 @@ struct PathKernels {
                                FilmMeetings& meetings);
 
     /// From meetings and heroes the weights and pdfs.
-    void (*share_rays)(const Sensor& sensor, SharedPaths& paths);
+    void (*trace_shared)(const Sensor& sensor, SharedPaths& paths);
 };
 
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.

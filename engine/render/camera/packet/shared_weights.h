@@ -30,14 +30,14 @@ struct SharedWeights {
 template <class T, std::size_t wavelengths>
 constexpr SharedWeights<T, wavelengths> shared_weights(const std::array<FilmArrival<T>, wavelengths>& arrivals,
                                                        const Vec2<T>& centre_px) {
-    const T share(1.0 / wavelengths);
+    const T fraction(1.0 / wavelengths);
     SharedWeights<T, wavelengths> shared{
-        .weight = {arrivals[0].transmittance}, .shared_pdf = share * arrivals[0].pdf, .hero_pdf = arrivals[0].pdf};
+        .weight = {arrivals[0].transmittance}, .shared_pdf = fraction * arrivals[0].pdf, .hero_pdf = arrivals[0].pdf};
     for (std::size_t i = 1; i < wavelengths; ++i) {
         const Vec2<T> off = arrivals[i].at_px - centre_px;
         const auto is_in_pixel = off.x >= T(-0.5) && off.x < T(0.5) && off.y >= T(-0.5) && off.y < T(0.5);
         shared.weight[i] = select(is_in_pixel, arrivals[i].transmittance, T(0));
-        shared.shared_pdf = shared.shared_pdf + select(is_in_pixel, share * arrivals[i].pdf, T(0));
+        shared.shared_pdf = shared.shared_pdf + select(is_in_pixel, fraction * arrivals[i].pdf, T(0));
     }
     const auto is_drawn = shared.shared_pdf > T(0);
     const T divisor = select(is_drawn, shared.shared_pdf, T(1));

@@ -24,7 +24,7 @@ SpectralLens<T> at_two(const Lens& lens) {
 /// Traces rays, every second one at each wavelength, event by event; returns how many events there were.
 template <class T>
 std::size_t compare_events(const device::Device& device, const Lens& lens, const std::vector<Ray<double>>& given,
-                           const RayWay<T>& way) {
+                           const RayCourse<T>& course) {
     const SpectralLens<T> at = at_two<T>(lens);
     std::vector<Ray<T>> rays;
     std::ranges::transform(given, std::back_inserter(rays), convert_ray<T, double>);
@@ -33,11 +33,11 @@ std::size_t compare_events(const device::Device& device, const Lens& lens, const
         wavelengths.push_back(i % 2);
     }
     const DeviceLens<T> there(device, at);
-    const DeviceEvents<T> found(device, there, rays, wavelengths, way);
+    const DeviceEvents<T> found(device, there, rays, wavelengths, course);
     std::size_t count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         std::vector<SurfaceEvent<T>> events;
-        const TracedRay<T> end = trace_along(at.at(wavelengths[i]), way, rays[i],
+        const TracedRay<T> end = trace_along(at.at(wavelengths[i]), course, rays[i],
                                              [&](const SurfaceEvent<T>& event) { events.push_back(event); });
         const std::string where = device.name() + ", ray " + std::to_string(i);
         EXPECT_EQ(found.end(i).status, end.status) << where;
@@ -63,7 +63,7 @@ std::size_t compare_events(const device::Device& device, const Lens& lens, const
 }
 
 template <class T>
-void compare_all_ways(const Lens& lens) {
+void compare_all_courses(const Lens& lens) {
     const std::vector<Ray<double>> forward = rays_at(lens, 101, 0.5);
     std::vector<Ray<double>> reverse = rays_at(lens, 101, 0.15);
     for (Ray<double>& ray : reverse) {
@@ -79,14 +79,14 @@ void compare_all_ways(const Lens& lens) {
 
 TEST(DeviceEvents, AreThoseOfRaysOneByOne) {
     for (const char* name : {"tessar", "heliar-tronnier"}) {
-        compare_all_ways<float>(formats::load_lens(name));
-        compare_all_ways<double>(formats::load_lens(name));
+        compare_all_courses<float>(formats::load_lens(name));
+        compare_all_courses<double>(formats::load_lens(name));
     }
 }
 
 TEST(DeviceEvents, AreThoseOfLensesOfMoreThanSpheres) {
     for (const Lens& lens : varied_tessars()) {
-        compare_all_ways<double>(lens);
+        compare_all_courses<double>(lens);
     }
 }
 

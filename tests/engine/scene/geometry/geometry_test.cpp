@@ -397,25 +397,25 @@ TEST(SceneGeometry, ManyRaysAtOnceMeetWhatEachDoes) {
     for (const int spheres_and_quads : {0, 5, 40}) {
         const SceneGeometry scene = crowd(spheres_and_quads, random);
         std::vector<Ray<double>> rays;
-        std::vector<Segment> ways;
+        std::vector<Segment> segments;
         for (int i = 0; i < 1000; ++i) {
             const Vec3d origin = 12.0 * random_direction(random);
             rays.push_back({origin, normalized(6.0 * random_direction(random) - origin)});
-            ways.push_back({12.0 * random_direction(random), 6.0 * random_direction(random)});
+            segments.push_back({12.0 * random_direction(random), 6.0 * random_direction(random)});
         }
         rays[70].origin.x = std::numeric_limits<double>::quiet_NaN();
         rays[71].direction = {};
-        ways[130].to = ways[130].from;
+        segments[130].to = segments[130].from;
         std::vector<std::optional<SurfaceHit>> hits(rays.size());
-        std::vector<std::uint8_t> are_occluded(ways.size());
+        std::vector<std::uint8_t> are_occluded(segments.size());
         intersect(scene, rays, hits);
-        find_occluded(scene, ways, are_occluded);
+        find_occluded(scene, segments, are_occluded);
         int met = 0;
         int occluded = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const auto expected = intersect(scene, rays[i].origin, rays[i].direction, 0.0, kInfinity);
             ASSERT_EQ(hits[i].has_value(), expected.has_value()) << i;
-            EXPECT_EQ(are_occluded[i] != 0, is_occluded(scene, ways[i].from, ways[i].to)) << i;
+            EXPECT_EQ(are_occluded[i] != 0, is_occluded(scene, segments[i].from, segments[i].to)) << i;
             occluded += are_occluded[i];
             if (expected) {
                 ++met;

@@ -298,9 +298,9 @@ TEST(Report, AsksNothingOfTheNetwork) {
     EXPECT_TRUE(has(page,
                     "content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
                     "img-src data:"));
-    for (const char* way_out :
+    for (const char* escape :
          {"https:", "src=\"http", "url(http", "@import", "fetch(", "XMLHttpRequest", "WebSocket", "innerHTML"}) {
-        EXPECT_FALSE(has(page, way_out)) << way_out;
+        EXPECT_FALSE(has(page, escape)) << escape;
     }
 }
 

@@ -101,7 +101,7 @@ TEST(PhotographedLenses, TheRightPrescriptionIsFound) {
             EXPECT_EQ(result.comparison.judgement.verdict, Verdict::fail);
             continue;
         }
-        EXPECT_EQ(result.share_beaten(), 1.0);
+        EXPECT_EQ(result.fraction_beaten(), 1.0);
         EXPECT_LT(*result.residual_um(), 1.5);
         EXPECT_NEAR(result.comparison.distortion->scale, 1.0, 5e-4);
         EXPECT_EQ(result.doubt, "");

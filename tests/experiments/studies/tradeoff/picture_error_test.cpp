@@ -12,7 +12,7 @@ namespace lensproof::studies::picture_error_test {
 
 using formats::Image;
 
-/// A coloured gradient, brighter by `gain`, with noise of that share of each pixel.
+/// A coloured gradient, brighter by `gain`, with noise of that fraction of each pixel.
 Image picture(double gain, double noise, unsigned seed) {
     Image image = formats::make_image(64, 48, {"R", "G", "B"});
     std::mt19937 random(seed);

@@ -24,9 +24,9 @@ TEST(Rungs, AtEqualTimeACheaperModelHasLessNoise) {
     rungs[0].picture.ciede2000.noise = 0.8;
     rungs[0].picture.flip = {.bias = {0.01, 0.001}, .noise = 0.08};
     compare_rungs(rungs);
-    const double share = std::sqrt(0.5 * 64.0 / 400.0);
-    EXPECT_NEAR(rungs[0].ciede2000_at_equal_time, std::hypot(0.3, 0.8 * share), 1e-12);
-    EXPECT_NEAR(rungs[0].flip_at_equal_time, std::hypot(0.01, 0.08 * share), 1e-12);
+    const double fraction = std::sqrt(0.5 * 64.0 / 400.0);
+    EXPECT_NEAR(rungs[0].ciede2000_at_equal_time, std::hypot(0.3, 0.8 * fraction), 1e-12);
+    EXPECT_NEAR(rungs[0].flip_at_equal_time, std::hypot(0.01, 0.08 * fraction), 1e-12);
     EXPECT_EQ(rungs[1].flip_at_equal_time, 0.0);
 }
 

@@ -92,7 +92,7 @@ TEST(SmoothLight, IsHeldByItsErrorsWhateverTheNoise) {
 // As a few samples of the pilot's pixels find them, and surer.
 TEST(SmoothLight, OfAPassHasThePassesLight) {
     const Pilot pilot(wall("tessar", 4.5, 20.0), {});
-    const Measured many = pass_films(pilot, "ghosts", 0, {.first = 0, .end = 6}).share(pilot);
+    const Measured many = pass_films(pilot, "ghosts", 0, {.first = 0, .end = 6}).fraction(pilot);
     const Measured few_ev =
         picture_errors(pilot.with_pass("ghosts").rgb, pilot.full().rgb, pilot.settings().probe.threads).exposure_ev;
     const double gain = std::exp2(few_ev.value);

@@ -1,10 +1,10 @@
-// calibration/statistics/order_statistics.h — medians and quantiles, which few bad values do not move.
+// engine/base/order_statistics.h — medians and quantiles, which few bad values do not move.
 #pragma once
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
-namespace lensproof::calibration {
+namespace lensproof {
 
 /// σ of a normal distribution over the median magnitude of its deviations.
 inline constexpr double kSigmaPerMedian = 1.4826;
@@ -30,4 +30,4 @@ T median(std::vector<T>& values) {
     return nth_value(values, values.size() / 2);
 }
 
-}  // namespace lensproof::calibration
+}  // namespace lensproof

@@ -1,4 +1,4 @@
-#include "experiments/runner/step_share.h"
+#include "experiments/runner/step_shard.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace lensproof::runner {
 namespace {
 
 /// In turns, since those that are new tend to lie together; a few at a time, since neighbours share a lens.
-std::vector<findings::PlannedStep> steps_of_share(const Experiment& experiment, int index, int count,
+std::vector<findings::PlannedStep> steps_of_shard(const Experiment& experiment, int index, int count,
                                                   const findings::RunSettings& settings) {
     std::vector<findings::PlannedStep> all;
     for (const auto& [table, study] : experiment.studies) {
@@ -27,11 +27,11 @@ std::vector<findings::PlannedStep> steps_of_share(const Experiment& experiment, 
     }
     constexpr std::size_t kTurns = 4;
     constexpr std::size_t kMostTogether = 16;
-    const auto shares = static_cast<std::size_t>(count);
-    const std::size_t together = std::clamp(all.size() / (kTurns * shares), std::size_t{1}, kMostTogether);
+    const auto shards = static_cast<std::size_t>(count);
+    const std::size_t together = std::clamp(all.size() / (kTurns * shards), std::size_t{1}, kMostTogether);
     std::vector<findings::PlannedStep> mine;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        if (i / together % shares == static_cast<std::size_t>(index - 1)) {
+        if (i / together % shards == static_cast<std::size_t>(index - 1)) {
             mine.push_back(std::move(all[i]));
         }
     }
@@ -53,9 +53,9 @@ std::optional<findings::Failure> failure_of(const std::string& label, const Work
 
 }  // namespace
 
-StepShare carry_out_share(const Experiment& experiment, int index, int count, const findings::RunSettings& settings,
+StepShard carry_out_shard(const Experiment& experiment, int index, int count, const findings::RunSettings& settings,
                           const findings::RunProgress& progress) {
-    const std::vector<findings::PlannedStep> mine = steps_of_share(experiment, index, count, settings);
+    const std::vector<findings::PlannedStep> mine = steps_of_shard(experiment, index, count, settings);
     settings.steps.expect(mine);
     const int size = static_cast<int>(mine.size());
     const int threads =
@@ -84,18 +84,18 @@ StepShare carry_out_share(const Experiment& experiment, int index, int count, co
             progress(label, done);
         });
 
-    StepShare share{.steps = mine.size()};
+    StepShard shard{.steps = mine.size()};
     for (std::optional<findings::Failure>& failure : failures) {
         if (failure) {
-            share.failures.push_back(*std::move(failure));
+            shard.failures.push_back(*std::move(failure));
         }
     }
     for (const auto& [table, study] : experiment.studies) {
         if (!study.steps) {
-            share.left.push_back(study.name);
+            shard.left.push_back(study.name);
         }
     }
-    return share;
+    return shard;
 }
 
 }  // namespace lensproof::runner
