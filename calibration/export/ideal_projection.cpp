@@ -26,6 +26,12 @@ std::string name_of(Projection projection) {
     return projection == Projection::equidistant ? "fisheye" : optics::projection_name(projection);
 }
 
+std::vector<std::string> ideal_projection_names() {
+    std::vector<std::string> names;
+    std::ranges::transform(optics::kProjections, std::back_inserter(names), name_of);
+    return names;
+}
+
 std::optional<Projection> ideal_projection(const std::string& name) {
     const auto* const found = std::ranges::find(optics::kProjections, name, name_of);
     return found == optics::kProjections.end() ? std::nullopt : std::optional(*found);

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/optics/projection.h"
 
@@ -9,6 +10,7 @@ namespace lensproof::calibration {
 
 /// lensfun's name of a projection: "fisheye" is the equidistant one.
 std::string name_of(optics::Projection projection);
+std::vector<std::string> ideal_projection_names();
 std::optional<optics::Projection> ideal_projection(const std::string& name);
 
 /// r/f of `angle_rad`; none where the projection images nothing, or no longer one to one.

@@ -213,7 +213,7 @@ void add_export_command(Program& program) {
     command.add_option("--lens-maker", options->maker, "lensfun: who made the lens");
     command.add_option("--lens-model", options->lens, "lensfun: the lens's name (default: the profile's)");
     command.add_option("--mount", options->mount, "lensfun: the mount's name").shows_default();
-    const OptionCheck projections = one_of({"rectilinear", "fisheye", "equisolid", "stereographic", "orthographic"});
+    const OptionCheck projections = one_of(calibration::ideal_projection_names());
     command
         .add_option("--lens-type", options->lens_type,
                     "lensfun: the projection (default: rectilinear up to 52° from the axis, else the nearest)")

@@ -2,7 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <opencv2/calib3d.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "calibration/detection/detect.h"
 #include "calibration/detection/line_points.h"
@@ -14,6 +18,7 @@
 #include "calibration/self_test/self_test.h"
 #include "calibration/self_test/simulated_chart.h"
 #include "engine/base/angle.h"
+#include "engine/formats/image/image.h"
 #include "engine/formats/image/jpeg.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
@@ -214,6 +219,76 @@ void register_photo_benchmarks() {
     benchmark::RegisterBenchmark("photos/8x6MP/self_test", time_self_test)->Unit(benchmark::kMillisecond);
 }
 
+// OpenCV's 13 photos of its left camera (Debian's opencv-doc), decoded before; where they are, else nothing.
+std::vector<formats::Image> left_photos() {
+    std::vector<formats::Image> photos;
+    for (const int i : {1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 12, 13, 14}) {
+        const std::filesystem::path file = "/usr/share/doc/opencv-doc/examples/data/left" +
+                                           std::string(i < 10 ? "0" : "") + std::to_string(i) + ".jpg";
+        if (!std::filesystem::exists(file)) {
+            return {};
+        }
+        photos.push_back(formats::read_image(file));
+    }
+    return photos;
+}
+
+calibration::MeasureInput input_of(const std::vector<formats::Image>& photos) {
+    calibration::MeasureInput input;
+    input.name = "left";
+    input.chart = {.pattern = scene::Checkerboard{10, 7, 30.0}};
+    input.threads = 1;
+    for (const formats::Image& photo : photos) {
+        input.pictures.push_back({"left" + std::to_string(input.pictures.size()), calibration::PictureRole::chart,
+                                  [&photo] { return photo; }});
+    }
+    return input;
+}
+
+void calibrate_by_opencv(const std::vector<formats::Image>& photos) {
+    std::vector<cv::Point3f> board;
+    for (int k = 0; k < 54; ++k) {
+        board.emplace_back(30.0F * static_cast<float>(k % 9), 30.0F * static_cast<float>(k / 9), 0.0F);
+    }
+    std::vector<std::vector<cv::Point2f>> seen;
+    for (const formats::Image& photo : photos) {
+        std::vector<cv::Point2f> corners;
+        if (cv::findChessboardCornersSB(calibration::detector_copy(photo), {9, 6}, corners,
+                                        cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY)) {
+            seen.push_back(corners);
+        }
+    }
+    cv::Mat camera;
+    cv::Mat distortion;
+    benchmark::DoNotOptimize(cv::calibrateCamera(std::vector(seen.size(), board), seen, {640, 480}, camera, distortion,
+                                                 cv::noArray(), cv::noArray()));
+}
+
+void register_left_photo_benchmarks() {
+    const auto add = [](const std::string& name, const auto& measuring) {
+        benchmark::RegisterBenchmark(("photos/left/" + name).c_str(),
+                                     [measuring](benchmark::State& state) {
+                                         const std::vector<formats::Image> photos = left_photos();
+                                         if (photos.empty()) {
+                                             state.SkipWithError("needs the package opencv-doc");
+                                             return;
+                                         }
+                                         while (state.KeepRunning()) {
+                                             measuring(photos);
+                                         }
+                                     })
+            ->Unit(benchmark::kMillisecond)
+            ->MeasureProcessCPUTime();
+    };
+    add("measure", [](const std::vector<formats::Image>& photos) {
+        const calibration::MeasureInput input = input_of(photos);
+        benchmark::DoNotOptimize(self_test(input, measure(input)));
+    });
+    add("measure_without_self_test",
+        [](const std::vector<formats::Image>& photos) { benchmark::DoNotOptimize(measure(input_of(photos))); });
+    add("opencv", calibrate_by_opencv);
+}
+
 }  // namespace
 
 void register_measure_benchmarks() {
@@ -231,6 +306,7 @@ void register_measure_benchmarks() {
         })->Unit(benchmark::kMillisecond);
     }
     register_photo_benchmarks();
+    register_left_photo_benchmarks();
 }
 
 }  // namespace lensproof

@@ -1,5 +1,6 @@
 #include "calibration/lines/line_distortion.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "engine/base/input_error.h"
@@ -46,7 +47,7 @@ TEST(LineDistortion, OfExactLinesIsTheLenses) {
 }
 
 // 95 % intervals of lines whose points are noisy and which are themselves a little bent, each its own way. All four
-// cases together, at two heights each; of 478 intervals (60 seeds) 467 hold the truth, more than 95 % because a
+// cases together, at two heights each; of 2396 intervals (300 seeds) 2339 hold the truth, more than 95 % because a
 // jackknife over a dozen lines is cautious. At a true 95 % four standard deviations of 128 are 7.7 %.
 TEST(LineDistortion, ItsIntervalsHoldTheTruth) {
     const unsigned count = trials(300U, 16U);
@@ -78,6 +79,7 @@ TEST(LineDistortion, ItsIntervalsHoldTheTruth) {
             held += own_held;
         }
     }
+    fmt::print("{} of {} intervals hold the truth\n", held, told);
     const double fraction = static_cast<double>(held) / told;
     EXPECT_GE(fraction, 0.90);
     EXPECT_LE(fraction, 0.99);
