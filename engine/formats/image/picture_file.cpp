@@ -17,6 +17,7 @@
 #include "engine/formats/image/confined_picture.h"
 #include "engine/formats/image/image.h"
 #include "engine/formats/image/jpeg.h"
+#include "engine/formats/image/raw_fault.h"
 #include "engine/formats/image/stated_sizes.h"
 
 namespace lensproof::formats {
@@ -126,6 +127,7 @@ OpenPicture open_picture_here(const fs::path& file, const OIIO::ImageSpec& hints
     const std::string fault = *form == PictureForm::exr    ? exr_fault(file)
                               : *form == PictureForm::png  ? png_fault(file)
                               : *form == PictureForm::jpeg ? jpeg_fault(read_file(file))
+                              : *form == PictureForm::raw  ? raw_fault(file)
                                                            : "";
     if (!fault.empty()) {
         throw InputError(fmt::format("{}: not a picture that can be read: {}", file.string(), fault));

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <fstream>
 #include <random>
+#include <tuple>
 
 #include "engine/base/file.h"
 #include "engine/base/memory.h"
@@ -158,6 +159,42 @@ TEST(PictureFile, GoesOverAPictureAHundredTimesAtMost) {
 }
 
 // What a file of 122 bytes promises is not made room for, unless asked for; then it is what it takes that counts.
+/// A TIFF of two texts: the maker's name and, of its second directory, the camera's.
+std::string tiff_of_camera(const std::string& maker, const std::string& model) {
+    std::string bytes("II*\0\10\0\0\0", 8);
+    const auto append = [&](std::size_t value, int size) {
+        for (int i = 0; i < size; ++i) {
+            bytes += static_cast<char>(value >> (8 * i));
+        }
+    };
+    for (const auto& [tag, text, next] : {std::tuple{271, maker, 26}, {272, model, 0}}) {
+        append(1, 2);
+        append(static_cast<std::size_t>(tag), 2);
+        append(2, 2);
+        append(6, 4);  // however long it is
+        append(tag == 271 ? 44 : 44 + maker.size() + 1, 4);
+        append(static_cast<std::size_t>(next), 4);
+    }
+    return bytes + maker + '\0' + model + '\0';
+}
+
+// LibRaw 0.20 appends to the name of a Hasselblad's camera, and ends the program where that leaves no room; found by
+// fuzzing, and in the corpus.
+TEST(PictureFile, RawHasNamesThatMayGrow) {
+    const TestFolder folder;
+    const auto complaint = [&](const std::string& bytes) {
+        return complaint_about([&] { read_image(named(folder, "a.dng", bytes)); });
+    };
+    const std::string name(60, 'H');
+    EXPECT_TRUE(says(complaint(tiff_of_camera("A Hasselblad's", name)), "name has 60 letters or more"));
+    EXPECT_TRUE(says(complaint(tiff_of_camera("hasselblad", name.substr(0, 41))), "41 letters"));
+    EXPECT_TRUE(says(complaint("IIRO" + std::string(2'000'000, 'h') + "asselblad"), "and this is none"));
+    for (const std::string& sound :
+         {tiff_of_camera("Hasselblad", "Hasselblad H3D II-39"), tiff_of_camera("Nobody", name)}) {
+        EXPECT_FALSE(says(complaint(sound), "letters"));
+    }
+}
+
 // The reader takes metadata for as long as they say that they are. A block that fits is read, as are segments of
 // others; found by fuzzing, and in the corpus.
 TEST(PictureFile, HasMetadataThatEndWithTheirSegment) {
