@@ -246,9 +246,10 @@ calibration::MeasureInput input_of(const std::vector<formats::Image>& photos) {
 }
 
 void calibrate_by_opencv(const std::vector<formats::Image>& photos) {
-    std::vector<cv::Point3f> board;
+    std::vector<cv::Point3f> board(54);
     for (int k = 0; k < 54; ++k) {
-        board.emplace_back(30.0F * static_cast<float>(k % 9), 30.0F * static_cast<float>(k / 9), 0.0F);
+        const int row = k / 9;
+        board[static_cast<std::size_t>(k)] = {30.0F * static_cast<float>(k % 9), 30.0F * static_cast<float>(row), 0.0F};
     }
     std::vector<std::vector<cv::Point2f>> seen;
     for (const formats::Image& photo : photos) {

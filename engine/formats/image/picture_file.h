@@ -27,8 +27,9 @@ struct OpenPicture {
 /// Opens the file with OpenImageIO's reader of its form, and no other: left to itself the library tries all that it
 /// has, on files of any content, and some write beyond their buffers. `hints` are the library's (raw:…).
 ///
-/// Throws InputError for a file that is missing or not of these forms, or whose header is damaged, and for a JPEG that
-/// is cut off (the library would fill what is missing with grey and say nothing), or has more than 100 scans.
+/// Throws InputError for a file that is missing or not of these forms, or whose header is damaged; for a JPEG that is
+/// cut off (the library would fill what is missing with grey and say nothing), or has more than 100 scans; and for what
+/// the library would not survive (stated_sizes.h, jpeg.h, raw_fault.h).
 ///
 /// Where files are distrusted (engine/base/confined.h), a confined process decodes it.
 OpenPicture open_picture(const std::filesystem::path& file, const OIIO::ImageSpec& hints);
