@@ -13,6 +13,10 @@ namespace lensproof::findings {
 
 std::vector<TomlTable> ExperimentFile::tables(const std::string& key) {
     std::vector<TomlTable> tables;
+    if (top.is_table(key)) {
+        tables.push_back(top.table(key));
+        return tables;
+    }
     for (Varied& one : varied_tables(top, key)) {
         tables.push_back(std::move(one.table));
     }
@@ -34,6 +38,38 @@ std::string read_name(TomlTable& table) {
         table.fail("name", fmt::format("is \"{}\", expected letters, digits, - and _", name));
     }
     return name;
+}
+
+std::string name_or(TomlTable& table, const std::string& kind) {
+    return table.has("name") ? read_name(table) : kind;
+}
+
+Findings told_apart(Findings found, const std::string& name, const std::string& kind) {
+    if (name == kind) {
+        return found;
+    }
+    const auto own = [&](std::string& id) { id = id.empty() ? id : name + "-" + id; };
+    for (Check& check : found.checks) {
+        own(check.id);
+        own(check.subject);
+        check.group += " (" + name + ")";
+    }
+    for (Subject& subject : found.subjects) {
+        own(subject.id);
+        subject.label = name + ": " + subject.label;
+        for (Picture& picture : subject.pictures) {
+            own(picture.name);
+        }
+    }
+    for (auto& [key, table] : found.tables) {
+        Json rows = Json::list();
+        for (Json row : table) {
+            row["id"] = name + "-" + row["id"].text();
+            rows.push_back(std::move(row));
+        }
+        table = std::move(rows);
+    }
+    return found;
 }
 
 Bound read_bound(TomlTable& table, const Bounds& bounds) {

@@ -54,7 +54,7 @@ struct ExperimentFile {
     std::map<std::string, std::filesystem::path> manifests{};  // of those that were photographed
     std::set<std::string> subjects{};  // the ids of what will be reported, as far as the file says them
 
-    /// The tables of a kind, where `vary` makes many of one each of them (varied.h).
+    /// The tables of a kind, where `vary` makes many of one each of them (varied.h); one by itself, [key], is one.
     std::vector<TomlTable> tables(const std::string& key);
     /// Takes an id that `key` makes: files are named by it, and curves and checks refer to it. Throws InputError where
     /// another table has it.
@@ -67,6 +67,13 @@ using StudyReader = std::vector<Study> (*)(ExperimentFile& file);
 
 /// The table's `name`, of letters, digits, - and _: files are called by it.
 std::string read_name(TomlTable& table);
+
+/// The same where a study is of the program itself, so that one is enough and needs no name: `kind` then.
+std::string name_or(TomlTable& table, const std::string& kind);
+
+/// What such a study found, told apart from another's by its name, unless that is its kind's: ids of checks, subjects
+/// and rows, and pictures' files, begin with it, labels and groups have it.
+Findings told_apart(Findings found, const std::string& name, const std::string& kind);
 
 /// What a number is held to, as a table states it by at_most, at_least or between = [low, high].
 struct Bound {

@@ -118,31 +118,43 @@ findings::Subject sweep_subject(const FloorSweep& sweep) {
     return subject;
 }
 
-std::vector<findings::Study> read_measurement_floor(findings::ExperimentFile& file) {
-    std::optional<TomlTable> table = file.top.optional_table("measurement_floor");
-    if (!table) {
-        return {};
+namespace {
+
+findings::Findings floor_findings(const FloorSettings& wanted, const findings::RunSettings& settings,
+                                  const findings::RunProgress& progress) {
+    findings::Findings found{.counts_checks = true, .subjects_title = "Sweeps"};
+    Json sweeps;
+    for (const auto measure : {measure_detectors, measure_quantities, measure_models, measure_intervals}) {
+        MeasurementFloor part = measure(wanted, settings, progress);
+        std::ranges::move(part.checks, std::back_inserter(found.checks));
+        std::ranges::transform(part.sweeps, std::back_inserter(found.subjects), sweep_subject);
+        std::ranges::transform(part.sweeps, std::back_inserter(sweeps), sweep_json);
     }
-    FloorSettings wanted;
-    wanted.sweeps = findings::names_of(*table, "sweeps", detector_sweeps());
-    wanted.detectors = findings::names_of(*table, "detectors", floor_detectors());
-    wanted.pictures = table->integer_or("pictures", wanted.pictures, 1, 1000);
-    wanted.trials = table->integer_or("trials", wanted.trials, 20, 100000);
-    table->finish();
-    return {{"measurement_floor",
-             [wanted = std::move(wanted)](const findings::RunSettings& settings, const findings::RunProgress& progress,
-                                          const findings::Findings&) {
-                 findings::Findings found{.counts_checks = true, .subjects_title = "Sweeps"};
-                 Json sweeps;
-                 for (const auto measure : {measure_detectors, measure_quantities, measure_models, measure_intervals}) {
-                     MeasurementFloor part = measure(wanted, settings, progress);
-                     std::ranges::move(part.checks, std::back_inserter(found.checks));
-                     std::ranges::transform(part.sweeps, std::back_inserter(found.subjects), sweep_subject);
-                     std::ranges::transform(part.sweeps, std::back_inserter(sweeps), sweep_json);
-                 }
-                 found.tables = {{"sweeps", std::move(sweeps)}};
-                 return found;
-             }}};
+    found.tables = {{"sweeps", std::move(sweeps)}};
+    return found;
+}
+
+}  // namespace
+
+std::vector<findings::Study> read_measurement_floor(findings::ExperimentFile& file) {
+    static const std::string kKind = "measurement_floor";
+    std::vector<findings::Study> studies;
+    for (TomlTable& table : file.tables(kKind)) {
+        FloorSettings wanted;
+        const std::string name = findings::name_or(table, kKind);
+        wanted.sweeps = findings::names_of(table, "sweeps", detector_sweeps());
+        wanted.detectors = findings::names_of(table, "detectors", floor_detectors());
+        wanted.pictures = table.integer_or("pictures", wanted.pictures, 1, 1000);
+        wanted.trials = table.integer_or("trials", wanted.trials, 20, 100000);
+        table.finish();
+        file.add_subject(table, "name", name);
+        studies.push_back({name, [wanted = std::move(wanted), name](const findings::RunSettings& settings,
+                                                                    const findings::RunProgress& progress,
+                                                                    const findings::Findings&) {
+                               return findings::told_apart(floor_findings(wanted, settings, progress), name, kKind);
+                           }});
+    }
+    return studies;
 }
 
 }  // namespace lensproof::studies

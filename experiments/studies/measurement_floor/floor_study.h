@@ -6,7 +6,8 @@
 
 namespace lensproof::studies {
 
-/// `pictures`, `trials`, `sweeps` and `detectors` of FloorSettings, all optional. Each sweep becomes a subject; a table
+/// `pictures`, `trials`, `sweeps` and `detectors` of FloorSettings, all optional, and `name` where a file has several
+/// such tables. Each sweep becomes a subject; a table
 /// "sweeps" has the numbers:
 ///     [{"id", "title", "setting", "parameter", "unit", "error", "error_unit",
 ///       "curves": [{"label", "points": [{"value", "error", "sigma", "found_percent", "trials", "failed"}]}]}]

@@ -197,21 +197,16 @@ std::vector<StabilityPoint> points_of(const Extreme& extreme, const findings::Ru
                                [&] { return measure_stability(extreme, settings.seed).points; });
 }
 
-}  // namespace
-
-std::vector<findings::Study> read_stability(findings::ExperimentFile& file) {
-    std::optional<TomlTable> table = file.top.optional_table("stability");
-    if (!table) {
-        return {};
-    }
+findings::Study stability_study(TomlTable& table, findings::ExperimentFile& file, const std::string& name,
+                                const std::string& kind) {
     std::vector<Extreme> extremes = stability_extremes();
     std::vector<std::string> ids;
     std::ranges::transform(extremes, std::back_inserter(ids), &Extreme::id);
-    const std::vector<std::string> wanted = findings::names_of(*table, "extremes", ids);
-    table->finish();
+    const std::vector<std::string> wanted = findings::names_of(table, "extremes", ids);
+    table.finish();
     std::erase_if(extremes, [&](const Extreme& extreme) { return !findings::is_wanted(wanted, extreme.id); });
     for (const Extreme& extreme : extremes) {
-        file.add_subject(*table, "extremes", extreme.id);
+        file.add_subject(table, "extremes", name == kind ? extreme.id : name + "-" + extreme.id);
     }
     const auto planned = [extremes](const findings::RunSettings& settings) {
         std::vector<findings::PlannedStep> steps;
@@ -223,9 +218,9 @@ std::vector<findings::Study> read_stability(findings::ExperimentFile& file) {
         });
         return steps;
     };
-    const auto carry_out = [extremes = std::move(extremes)](const findings::RunSettings& settings,
-                                                            const findings::RunProgress& progress,
-                                                            const findings::Findings&) {
+    const auto carry_out = [extremes = std::move(extremes), name, kind](const findings::RunSettings& settings,
+                                                                        const findings::RunProgress& progress,
+                                                                        const findings::Findings&) {
         std::vector<StabilitySweep> sweeps(extremes.size());
         const int count = static_cast<int>(extremes.size());
         parallel_for(
@@ -235,9 +230,20 @@ std::vector<findings::Study> read_stability(findings::ExperimentFile& file) {
                 sweeps[at] = {.extreme = extremes[at], .points = points_of(extremes[at], settings)};
             },
             [&](int done) { progress("extremes", static_cast<double>(done) / count); });
-        return stability_findings(sweeps);
+        return findings::told_apart(stability_findings(sweeps), name, kind);
     };
-    return {{"stability", carry_out, planned}};
+    return {name, carry_out, planned};
+}
+
+}  // namespace
+
+std::vector<findings::Study> read_stability(findings::ExperimentFile& file) {
+    static const std::string kKind = "stability";
+    std::vector<findings::Study> studies;
+    for (TomlTable& table : file.tables(kKind)) {
+        studies.push_back(stability_study(table, file, findings::name_or(table, kKind), kKind));
+    }
+    return studies;
 }
 
 }  // namespace lensproof::studies

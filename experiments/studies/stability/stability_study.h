@@ -10,7 +10,8 @@
 
 namespace lensproof::studies {
 
-/// `extremes`: ids of those wanted; all, where the key is missing. They run one after the other on one thread each.
+/// `extremes`: ids of those wanted; all, where the key is missing. `name` where a file has several such tables. They
+/// run one after the other on one thread each.
 std::vector<findings::Study> read_stability(findings::ExperimentFile& file);
 
 /// One check for each extreme: a double's error as a fraction of its bound. Then those on all rays together: the right

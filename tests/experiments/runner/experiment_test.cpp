@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <set>
 #include <stdexcept>
 
 #include "engine/base/input_error.h"
@@ -43,6 +44,32 @@ TEST(Experiment, HoldsStudiesOfAnyKind) {
     EXPECT_THROW(studies_of("[stabilitty]\n" + kPassage), InputError);
     EXPECT_TRUE(
         says(complaint_about([&] { studies_of(""); }), "neither [[simulations]] nor [[photos]] nor [stability]"));
+}
+
+// A file may have one that is about the program itself, or several by their names; what they find has ids of its own.
+TEST(Experiment, StudiesOfTheProgramAreToldApartByName) {
+    const TestFolder folder;
+    const auto file = folder.path() / "e.toml";
+    const auto read = [&](const std::string& tables) {
+        write_file(file, "title = \"t\"\n" + tables);
+        return read_experiment(file);
+    };
+    const std::string field = "[[stability]]\nextremes = [\"field\"]\n";
+    const Findings found = run_experiment(read(field + field + "name = \"again\"\n"), {}, kQuiet);
+    ASSERT_EQ(found.subjects.size(), 2U);
+    EXPECT_EQ(found.subjects[0].id, "field");
+    EXPECT_EQ(found.subjects[1].id, "again-field");
+    EXPECT_EQ(found.subjects[1].pictures[0].name, "again-" + found.subjects[0].pictures[0].name);
+    std::set<std::string> ids;
+    for (const findings::Check& check : found.checks) {
+        EXPECT_TRUE(ids.insert(check.id).second) << check.id;
+    }
+    ASSERT_EQ(found.tables.size(), 1U);
+    EXPECT_EQ(found.tables[0].second[1]["id"].text(), "again-field");
+    EXPECT_TRUE(says(complaint_about([&] { read(field + field); }), "makes a second subject \"field\""));
+    const std::string floor = "[[measurement_floor]]\ntrials = 20\n";
+    EXPECT_EQ(read(floor + floor + "name = \"again\"\n").studies[1].second.name, "again");
+    EXPECT_TRUE(says(complaint_about([&] { read(floor + floor); }), "makes a second subject \"measurement_floor\""));
 }
 
 // A subject's id names files, and checks refer to it: no two tables may make the same.
