@@ -433,7 +433,7 @@ std::vector<double> numbers_of(const GhostSurvey& survey) {
 }
 
 // Blades that mirror, a sensor that does, a turned group: whatever rays meet, a device finds the same numbers. (Bare
-// glass: a GPU's sines, which layers take, are not this machine's.)
+// glass: a GPU's exponentials, which layers take where a wave fades, are not this machine's.)
 TEST(Ghosts, AreTheSameOnADevice) {
     for (const char* name : {"tessar", "heliar-tronnier"}) {
         const optics::Lens lens = formats::load_lens(name, {.coatings = {"none"}});

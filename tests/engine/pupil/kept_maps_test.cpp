@@ -9,6 +9,7 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/engine/every_device.h"
 #include "tests/test_folder.h"
 
 namespace lensproof::pupil::kept_maps_test {
@@ -86,6 +87,24 @@ TEST(KeptMaps, AreKeptApart) {
     lens[0].specials[0].mask = optics::StopMask(optics::PolygonStop{.blades = 5});
     kept_pupil_map(cache, lens, true, 20.0);
     EXPECT_EQ(files(), 9);
+}
+
+// A device that traces for a map: to the last bit the map that is made without, and the device has traced.
+TEST(KeptMaps, AreMadeTheSameOnADevice) {
+    const std::string pupil = PupilMap(tessar(), true, 30.0).serialized();
+    const std::string entrance = EntranceMap(tessar(), true).serialized();
+    for (const device::Device& device : every_device()) {
+        const auto fail = [](const std::string& why) { ADD_FAILURE() << why; };
+        device::SharedDevice shared(device, fail, fail);
+        EXPECT_EQ(PupilMap(tessar(), true, 30.0, {.device = &shared}).serialized(), pupil) << device.name();
+        EXPECT_EQ(EntranceMap(tessar(), true, kInfinity, {.device = &shared}).serialized(), entrance) << device.name();
+    }
+    bool has_failed = false;
+    const auto heard = [&](const std::string&) { has_failed = true; };
+    const device::Device failing = device::Device::stand_in(0);
+    device::SharedDevice shared(failing, heard, heard);
+    EXPECT_EQ(PupilMap(tessar(), true, 30.0, {.device = &shared}).serialized(), pupil);
+    EXPECT_TRUE(has_failed);
 }
 
 TEST(KeptMaps, EntrancesComeBackToo) {

@@ -42,9 +42,9 @@ Paths on_device(const device::Device& device, const TestCamera& camera, const op
                      range, capacity);
 }
 
-/// With the expected weights where they differ by the rounding of coatings' sines and cosines, which are a GPU's own:
-/// of 2 ulp at most (CUDA C++ Programming Guide, "Mathematical Functions"), some four at each face, of which the lens
-/// has fewer than ten.
+/// With the expected weights where they differ by the rounding of exponentials where waves fade in coatings, which are
+/// a GPU's own: of 2 ulp at most (CUDA C++ Programming Guide, "Mathematical Functions"), some four at each face, of
+/// which the lens has fewer than ten.
 template <class T>
 Paths but_for_coatings(Paths found, const Paths& expected) {
     for (std::size_t i = 0; i < std::min(found.valid.size(), expected.valid.size()); ++i) {

@@ -200,27 +200,60 @@ TEST(SceneGeometry, TheNearerOfTwoIsSeenEvenWhereFloatsAreTooCoarse) {
     }
 }
 
-// A closed surface, rays aimed at its edges and vertices from inside: none gets out, and none passes from outside
-// without meeting it twice.
-TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndVertices) {
+// A closed surface, a million rays aimed at its edges and, a third of them, its vertices, by themselves and many at
+// once: from inside none gets out through an edge, and from outside each that does more than graze it comes in, meets
+// it from within, and is gone. Of those that are aimed at a vertex to the last bit Embree's robust mode tells of no
+// triangle 1 in 100,000 times from inside and 2 in 10,000 from outside.
+TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndNearlyAtVertices) {
     const TriangleMesh mesh = icosphere(100.0, 3);
     const AffineMap far_away = at({31.0, -170.0, 905.0}, about_x(33.0));
     const SceneGeometry moved = scene_of(mesh, far_away);
     const SceneGeometry instanced({mesh},
                                   {{.shape = 0, .to_world = far_away}, {.shape = 0, .to_world = at({0, 0, -999})}});
     std::mt19937_64 random(5);
-    int leaks = 0;
-    for (int i = 0; i < 100000; ++i) {
-        const SceneGeometry& scene = i % 2 == 0 ? moved : instanced;
+    const auto rim_point = [&](int i) {
         const auto& triangle = mesh.triangles[random() % mesh.triangles.size()];
         const Vec3d a = converted<double>(mesh.positions[triangle[0]]);
         const Vec3d b = converted<double>(mesh.positions[triangle[1]]);
-        const double along = i % 3 == 0 ? 0.0 : uniform(random, 0.0, 1.0);
-        const Vec3d target = map_point(far_away, a + along * (b - a));
-        const Vec3d inside = map_point(far_away, uniform(random, 0.0, 90.0) * random_direction(random));
-        leaks += intersect(scene, inside, normalized(target - inside), 0.0, 300.0) ? 0 : 1;
+        return a + (i % 3 == 0 ? 0.0 : uniform(random, 0.0, 1.0)) * (b - a);
+    };
+    const auto ray_from = [&](const Vec3d& from, const Vec3d& towards) {
+        const Vec3d origin = map_point(far_away, from);
+        return Ray<double>{origin, normalized(map_point(far_away, towards) - origin)};
+    };
+    int leaks = 0;
+    int leaks_at_vertices = 0;
+    constexpr int kAtOnce = 100;
+    for (int batch = 0; batch < 8000; ++batch) {
+        const SceneGeometry& scene = batch % 2 == 0 ? moved : instanced;
+        std::vector<Ray<double>> rays;
+        for (int i = 0; i < kAtOnce; ++i) {
+            rays.push_back(ray_from(uniform(random, 0.0, 90.0) * random_direction(random), rim_point(i)));
+        }
+        std::vector<std::optional<SurfaceHit>> hits(rays.size());
+        intersect(scene, rays, hits);
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            (i % 3 == 0 ? leaks_at_vertices : leaks) += hits[i] ? 0 : 1;
+        }
+    }
+    for (int i = 0; i < 200000; ++i) {
+        const SceneGeometry& scene = i % 2 == 0 ? moved : instanced;
+        const Vec3d target = rim_point(i);
+        const Vec3d from = 300.0 * random_direction(random);
+        if (std::abs(dot(normalized(target - from), normalized(target))) < 0.15) {
+            continue;
+        }
+        const Ray<double> ray = ray_from(from, target);
+        const auto met = [&](const Vec3d& origin) { return intersect(scene, origin, ray.direction, 0.0, 500.0); };
+        const auto in = met(ray.origin);
+        const auto out = in ? met(ray_origin(*in, ray.direction)) : std::nullopt;
+        const bool is_through = out && dot(in->geometric_normal, ray.direction) < 0.0 &&
+                                dot(out->geometric_normal, ray.direction) > 0.0 &&
+                                !met(ray_origin(*out, ray.direction));
+        (i % 3 == 0 ? leaks_at_vertices : leaks) += is_through ? 0 : 1;
     }
     EXPECT_EQ(leaks, 0);
+    EXPECT_LT(leaks_at_vertices, 60);  // of 330,000
 }
 
 struct SelfHits {
