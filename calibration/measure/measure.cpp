@@ -129,14 +129,20 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
     for (const std::optional<double>& uncertainty : profile.geometry->uncertainty->far_px) {
         worst = std::max(worst, uncertainty.value_or(0.0));
     }
+    const bool is_far = std::ranges::all_of(charts, &ChartView::is_far);
     if (worst > kUnknownPlace * half_diagonal_px(profile)) {
-        const bool is_far = std::ranges::all_of(charts, &ChartView::is_far);
         profile.warnings.push_back(fmt::format(
             "the pictures do not say what the camera does in all of the frame: a place is known to ± {:.3g} px "
             "at worst; add {}",
             worst,
             is_far ? "directions that are seen in the corners"
                    : "views of the chart that reach into the corners, tilted by 20° or more"));
+    }
+    if (charts.size() == 1 && !is_far) {
+        profile.warnings.emplace_back(
+            "one picture tells noise from nothing else: errors that it has as a whole (a chart that is not flat, "
+            "corners "
+            "that lie aside) are in no stated error; add views");
     }
     for (std::size_t v = 0; v < charts.size(); ++v) {
         if (geometry.views[v].weight < 1.0) {

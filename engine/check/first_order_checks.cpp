@@ -98,30 +98,41 @@ void compare(Findings& findings, const char* code, std::string_view what, const 
     }
 }
 
-/// The thickness of the cover glass that would explain a back focus. Nothing where no sensor's has it, where the lens
-/// is not as stated, or where one slip in the distance explains as much.
-std::optional<double> explaining_cover_glass(const CheckedLens& checked, const Comparison& back_focus) {
+/// A cover glass that would explain a back focus.
+struct CoverGlass {
+    double thickness_mm = 0.0;
+    bool is_likeliest = false;  // the lens is as stated, and no slip in the distance explains as much
+};
+
+/// Nothing where no sensor's has such a thickness, or where the lens is another than is stated.
+std::optional<CoverGlass> explaining_cover_glass(const CheckedLens& checked, const Comparison& back_focus) {
     const double thickness = (back_focus.stated - back_focus.computed) / (1.0 - 1.0 / kCoverGlassIndex);
     const std::optional<double>& efl = checked.claims.efl_mm;
-    const bool is_plausible = thickness >= kThinnestCoverGlass && thickness <= kThickestCoverGlass;
-    const bool is_as_stated = !efl || std::abs(checked.focus->efl / *efl - 1.0) < kSameFocalLength;
+    const double off = efl ? std::abs(checked.focus->efl / *efl - 1.0) : 0.0;
+    if (!(thickness >= kThinnestCoverGlass && thickness <= kThickestCoverGlass && off < kFocalLength.warning)) {
+        return std::nullopt;
+    }
     const auto explains = [&](const NumberChange& change) {
         return std::abs(change.value - back_focus.computed) < kSameDistance * std::abs(back_focus.scale);
     };
     const bool is_slip = std::ranges::any_of(plausible_changes(back_focus.stated), explains);
-    return is_plausible && is_as_stated && !is_slip ? std::optional(thickness) : std::nullopt;
+    return CoverGlass{thickness, !is_slip && off < kSameFocalLength};
 }
 
-/// Rule 20. A cover glass is information where the focal length is stated and met, else a guess that still warns.
+/// Rule 20. A cover glass is information where the focal length is stated and met, else a guess that still warns; so it
+/// is where something else is as likely.
 void check_back_focus(const CheckedLens& checked, std::string_view what, const Comparison& back_focus, int surface,
                       Findings& findings) {
     const std::size_t count = findings.size();
     compare(findings, "back-focus", what, back_focus, kBackFocus, surface);
-    if (const std::optional<double> thickness = explaining_cover_glass(checked, back_focus);
-        thickness && findings.size() > count) {
+    if (const std::optional<CoverGlass> glass = explaining_cover_glass(checked, back_focus);
+        glass && findings.size() > count) {
         optics::Finding& finding = findings.back();
-        finding.severity = checked.claims.efl_mm ? info : std::min(finding.severity, warning);
-        finding.message += fmt::format("; a cover glass of {:.1f} mm would explain it", *thickness);
+        if (glass->is_likeliest) {
+            finding.severity = checked.claims.efl_mm ? info : std::min(finding.severity, warning);
+        }
+        finding.message += fmt::format("; a cover glass of {:.1f} mm would explain it{}", glass->thickness_mm,
+                                       glass->is_likeliest ? "" : ", and so would a slip in a number");
     }
 }
 

@@ -81,8 +81,11 @@ void check_flat_spelling(const CheckedLens& checked, int i, Findings& findings) 
 void check_extremes(const optics::PrescribedSurface& row, int surface, Findings& findings) {
     const auto judge = [&](const char* what, double length) {
         if (std::isfinite(length) && length > kUsualLength) {
-            add(findings, "extreme-value", length > kLargestLength ? error : warning, surface,
-                fmt::format("the {} is {} mm: more than 10 m", what, length), length, kUsualLength, "mm");
+            const bool is_beyond = length > kLargestLength;
+            add(findings, "extreme-value", is_beyond ? error : warning, surface,
+                fmt::format("the {} is {} mm: more than {}", what, length,
+                            is_beyond ? "10 km, the most that is taken" : "10 m"),
+                length, is_beyond ? kLargestLength : kUsualLength, "mm");
         }
     };
     if (!row.is_flat() && std::isfinite(row.radius_mm) && std::abs(row.radius_mm) < kSmallestRadius) {
