@@ -227,6 +227,7 @@ TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndNearlyAtVertices) {
     for (int batch = 0; batch < 8000; ++batch) {
         const SceneGeometry& scene = batch % 2 == 0 ? moved : instanced;
         std::vector<Ray<double>> rays;
+        rays.reserve(kAtOnce);
         for (int i = 0; i < kAtOnce; ++i) {
             rays.push_back(ray_from(uniform(random, 0.0, 90.0) * random_direction(random), rim_point(i)));
         }
