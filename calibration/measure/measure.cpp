@@ -141,8 +141,7 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
     if (charts.size() == 1 && !is_far) {
         profile.warnings.emplace_back(
             "one picture tells noise from nothing else: errors that it has as a whole (a chart that is not flat, "
-            "corners "
-            "that lie aside) are in no stated error; add views");
+            "corners that lie aside) are in no stated error; add views");
     }
     for (std::size_t v = 0; v < charts.size(); ++v) {
         if (geometry.views[v].weight < 1.0) {

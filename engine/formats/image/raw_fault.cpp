@@ -15,7 +15,7 @@ namespace lensproof::formats {
 namespace {
 
 constexpr std::string_view kMaker = "hasselblad";
-constexpr std::size_t kMostLetters = 40;  // LibRaw's have room for 63, and it appends a dozen letters at most
+constexpr std::size_t kMostLetters = 48;  // LibRaw has room for 63, and appends two endings like "-100fA"
 constexpr std::size_t kLettersRead = 63;
 
 constexpr std::uint32_t kMakerTag = 0x010F;
@@ -101,15 +101,15 @@ class TiffNames {
         const std::uint32_t count = number(at + 4, 4);
         const std::uint32_t value = number(at + 8, 4);
         const std::uint64_t size = std::uint64_t{count} * kBytesOfType[type < kBytesOfType.size() ? type : 0];
-        const std::string name = text(size > 4 ? value : at + 8);
+        const std::uint32_t place = size > 4 ? value : at + 8;
         if (tag == kMakerTag) {
-            makers_.push_back(name);
+            makers_.push_back(text(place));
         } else if (tag == kModelTag || tag == kUniqueModelTag) {
-            longest_model_ = std::max(longest_model_, name.size());
+            longest_model_ = std::max(longest_model_, text(place).size());
         } else if (std::ranges::find(kDirectoryTags, tag) != std::ranges::end(kDirectoryTags)) {
             constexpr std::uint32_t kMostBelow = 64;
             for (std::uint32_t i = 0; i < std::min(count, kMostBelow); ++i) {
-                wait_for(size > 4 ? number(value + 4 * i, 4) : value);
+                wait_for(number(place + 4 * i, 4));
             }
         }
     }

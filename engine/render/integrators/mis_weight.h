@@ -51,8 +51,8 @@ struct PathTurn {
     double to_camera = 0.0;  // and a light path to the camera's
     double cos_light = 1.0;  // |cos| of these directions about the geometric normal
     double cos_camera = 1.0;
-    bool is_delta = false;               // at a mirror or smooth glass, without pdfs
-    bool is_camera_paths_alone = false;  // one that light paths do not make (shading_frame.h)
+    bool is_delta = false;              // at a mirror or smooth glass, without pdfs
+    bool is_from_camera_alone = false;  // one that light paths do not make (shading_frame.h)
 };
 
 /// The turn at a vertex of a camera path, which goes on along `onwards` (world) and `wi` (local) with the pdf
@@ -92,7 +92,7 @@ class CameraMisWeight {
 
     void turn(const PathTurn& at) {
         if (at.is_delta) {
-            by_light_ *= is_first_ || at.is_camera_paths_alone ? 0.0 : 1.0;
+            by_light_ *= is_first_ || at.is_from_camera_alone ? 0.0 : 1.0;
         } else {
             by_light_ *= arrives(at) * at.cos_light / at.to_light;
         }

@@ -132,11 +132,10 @@ class PathWalk {
 
     /// Only as much of a turn as weights need.
     [[nodiscard]] PathTurn weighed(const PathVertex& vertex, const PathVertex::Turn& turn) const {
-        return turn.bsdf.is_delta
-                   ? PathTurn{.is_delta = true,
-                              .is_camera_paths_alone =
-                                  start_->drawn != nullptr && vertex.as_from(turn.onwards, turn.bsdf.wi).is_bent}
-                   : weighed(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.pdf);
+        return turn.bsdf.is_delta ? PathTurn{.is_delta = true,
+                                             .is_from_camera_alone = start_->drawn != nullptr &&
+                                                                     vertex.as_from(turn.onwards, turn.bsdf.wi).is_bent}
+                                  : weighed(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.pdf);
     }
     [[nodiscard]] PathTurn weighed(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi,
                                    double to_light) const {

@@ -147,7 +147,7 @@ std::vector<findings::Study> read_measurement_floor(findings::ExperimentFile& fi
         wanted.pictures = table.integer_or("pictures", wanted.pictures, 1, 1000);
         wanted.trials = table.integer_or("trials", wanted.trials, 20, 100000);
         table.finish();
-        file.add_subject(table, "name", name);
+        file.add_subject(table, "name", name);  // as its subjects' ids, which begin with it
         studies.push_back({name, [wanted = std::move(wanted), name](const findings::RunSettings& settings,
                                                                     const findings::RunProgress& progress,
                                                                     const findings::Findings&) {

@@ -241,7 +241,7 @@ TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndNearlyAtVertices) {
         const SceneGeometry& scene = i % 2 == 0 ? moved : instanced;
         const Vec3d target = rim_point(i);
         const Vec3d from = 300.0 * random_direction(random);
-        if (std::abs(dot(normalized(target - from), normalized(target))) < 0.15) {
+        if (std::abs(dot(normalized(target - from), normalized(target))) < 0.15) {  // facets lean by 0.095
             continue;
         }
         const Ray<double> ray = ray_from(from, target);
@@ -254,7 +254,7 @@ TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndNearlyAtVertices) {
         (i % 3 == 0 ? leaks_at_vertices : leaks) += is_through ? 0 : 1;
     }
     EXPECT_EQ(leaks, 0);
-    EXPECT_LT(leaks_at_vertices, 60);  // of 330,000
+    EXPECT_LE(leaks_at_vertices, 18 + 4 * 4);  // 18 were seen, with a deviation of 4
 }
 
 struct SelfHits {
