@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -18,13 +19,16 @@ namespace {
 
 constexpr double kSmallestOutlier_px = 0.1;  // no point this close is ever an outlier
 constexpr int kOutlierRounds = 3;
-// Of a view's points, and its robust spread against that of all: normal noise has no outlier at 6 sigmas, and the
-// spread of twenty points is known to a fifth. Then the view is off, and not some of its points.
+// Of a view's points: normal noise has no outlier at 6 sigmas. The view is off, and not some of its points, if its
+// robust spread is this often that of all (of twenty points it is known to a fifth), or if so many outliers in one view
+// are that improbable where the other views have theirs.
 constexpr double kOutliersByView = 0.1;
 constexpr double kSpreadByView = 2.0;
-constexpr double kHeavyTails = 1.5;      // of the plain standard deviation over the robust one, 1 for normal noise
-constexpr double kUndetermined = 0.05;   // a relative standard error above this is no measurement
-constexpr double kLeastSigma_px = 0.01;  // no detector is better; judges views whose residuals happen to be tiny
+constexpr double kImprobable = 1e-4;
+constexpr double kSigmasOfTenth = 1.645;  // a tenth of normal noise's magnitudes is larger
+constexpr double kHeavyTails = 1.5;       // of the plain standard deviation over the robust one, 1 for normal noise
+constexpr double kUndetermined = 0.05;    // a relative standard error above this is no measurement
+constexpr double kLeastSigma_px = 0.01;   // no detector is better; judges views whose residuals happen to be tiny
 
 class Fit {
   public:
@@ -236,31 +240,68 @@ class Fit {
         return changed;
     }
 
+    // How far a view's points are from the model, used or not.
+    struct Departures {
+        std::vector<double> distances;
+        std::vector<double> magnitudes;  // of coordinates, where the model images the point
+        int outliers = 0;
+    };
+
+    [[nodiscard]] Departures departures(const BundleState& state, std::size_t view, double limit) const {
+        Departures result;
+        for (std::size_t i = 0; i < bundle_.used[view].size(); ++i) {
+            const auto r = residual(bundle_, state, view, i);
+            result.distances.push_back(r ? std::hypot(r->x, r->y) : std::numeric_limits<double>::infinity());
+            result.outliers += result.distances.back() > limit ? 1 : 0;
+            if (r) {
+                result.magnitudes.insert(result.magnitudes.end(), {std::abs(r->x), std::abs(r->y)});
+            }
+        }
+        return result;
+    }
+
+    // The standard deviation that a view's points have of their own where the view is off as a whole; else none. Where
+    // part of it is (a board that is bent at one end) the median does not show it, but the outermost tenth does.
+    static std::optional<double> spread_if_off(Departures& own, int others_outliers, std::size_t others_points,
+                                               double usual) {
+        const auto points = static_cast<double>(own.distances.size());
+        if (own.magnitudes.empty() || others_points == 0 || own.outliers < kOutliersByView * points || usual <= 0.0) {
+            return std::nullopt;
+        }
+        const double middle = kSigmaPerMedian * median(own.magnitudes);
+        if (middle >= kSpreadByView * usual) {
+            return middle;
+        }
+        // Laplace's rule: others without an outlier do not have none for certain.
+        const boost::math::binomial chance(points,
+                                           (others_outliers + 1.0) / (static_cast<double>(others_points) + 2.0));
+        if (own.outliers > 0 && cdf(complement(chance, own.outliers - 1.0)) < kImprobable) {
+            return std::max({middle, quantile(own.magnitudes, 0.9) / kSigmasOfTenth, usual});
+        }
+        return std::nullopt;
+    }
+
     bool mark_outliers(const BundleState& state) {
         const double usual = spread(state).robust;
         const double limit = std::max(options_.outlier_sigmas * usual, kSmallestOutlier_px);
+        std::vector<Departures> views;
+        int outliers = 0;
+        std::size_t points = 0;
+        for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
+            views.push_back(departures(state, v, limit));
+            outliers += views[v].outliers;
+            points += views[v].distances.size();
+        }
         bool changed = false;
         for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
-            std::vector<double> distances;  // of the view's points, used or not
-            std::vector<double> magnitudes;
-            for (std::size_t i = 0; i < bundle_.used[v].size(); ++i) {
-                const auto r = residual(bundle_, state, v, i);
-                distances.push_back(r ? std::hypot(r->x, r->y) : std::numeric_limits<double>::infinity());
-                if (r) {
-                    magnitudes.insert(magnitudes.end(), {std::abs(r->x), std::abs(r->y)});
-                }
-            }
-            const auto outliers = std::ranges::count_if(distances, [&](double d) { return d > limit; });
-            const double own = magnitudes.empty() ? 0.0 : kSigmaPerMedian * median(magnitudes);
-            const bool is_off =
-                bundle_.views.size() > 1 && usual > 0.0 && own >= kSpreadByView * usual &&
-                static_cast<double>(outliers) >= kOutliersByView * static_cast<double>(distances.size());
+            const auto own =
+                spread_if_off(views[v], outliers - views[v].outliers, points - views[v].distances.size(), usual);
             double& weight = bundle_.views[v].weight;
-            const double now = is_off ? std::pow(usual / own, 2) : 1.0;
+            const double now = own ? std::pow(usual / *own, 2) : 1.0;
             changed = changed || std::abs(now - weight) > 0.05 * weight;
             weight = now;
-            for (std::size_t i = 0; i < distances.size(); ++i) {
-                const bool use = distances[i] * std::sqrt(weight) <= limit;
+            for (std::size_t i = 0; i < bundle_.used[v].size(); ++i) {
+                const bool use = views[v].distances[i] * std::sqrt(weight) <= limit;
                 changed = changed || use != bundle_.used[v][i];
                 bundle_.used[v][i] = use;
             }

@@ -31,10 +31,10 @@ struct GeometryOptions {
     bool fit_board_shape = false;
     /// Points farther from the fit than this many standard deviations (estimated robustly) are left out. Where there
     /// are any, the fit goes through Cauchy's loss first, so that they do not pull at what they are judged by. Outliers
-    /// that come by the view (a tenth of its points and more, and the view's own residuals at least twice the others')
-    /// are no accidents of single points, and leaving out those beyond a limit would keep what pulls the same way
-    /// within it: such a view keeps its points, and all of them count by the inverse square of their own spread. 0:
-    /// plain least squares over all points.
+    /// that come by the view (a tenth of its points and more, and the view's own residuals at least twice the others',
+    /// or so many only in this view that chance would do it once in 10,000) are no accidents of single points, and
+    /// leaving out those beyond a limit would keep what pulls the same way within it: such a view keeps its points, and
+    /// all of them count by the inverse square of their own spread. 0: plain least squares over all points.
     double outlier_sigmas = 6.0;
 };
 

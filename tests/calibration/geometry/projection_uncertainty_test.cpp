@@ -258,6 +258,27 @@ TEST(CalibrationUncertainty, AViewThatDisagreesLosesItsWeight) {
     EXPECT_NEAR(focal.rms(), 1.0, 0.3);
 }
 
+// One end of a board bent, by up to 4 px at 0.05 px noise: the middle of the view's residuals is as that of the others,
+// but a tenth and more of its points are outliers and no other view has any.
+TEST(CalibrationUncertainty, AViewThatDisagreesAtOneEndLosesItsWeightToo) {
+    Study study;
+    study.options.outlier_sigmas = 6.0;
+    const Vec2d corner = study.exact[1].image_px.front();
+    for (Vec2d& p : study.exact[1].image_px) {
+        p.x += std::max(0.0, 4.0 - std::hypot(p.x - corner.x, p.y - corner.y) / 40.0);
+    }
+    Noise noise(6);
+    Normalized focal;
+    for (int trial = 0; trial < 60; ++trial) {
+        const GeometryFit fit = study.fit(0.05, noise);
+        for (std::size_t v = 0; v < fit.views.size(); ++v) {
+            EXPECT_EQ(fit.views[v].weight < 1.0, v == 1) << trial << " " << v;
+        }
+        focal.add(focal_length_px(fit.model) - study.truth.parameters[0], fit.standard_error(0));
+    }
+    EXPECT_NEAR(focal.rms(), 1.0, 0.3);
+}
+
 // A tenth of the points thrown about by up to 30 px, always to the same side: Cauchy's loss and the 6 σ limit leave a
 // fit that is as good as without them (4 standard errors), and every point that is off by more than 1 px is left out.
 TEST(CalibrationUncertainty, ATenthOfWildPointsDoesNoHarm) {
