@@ -6,7 +6,8 @@ namespace lensproof::calibration {
 namespace {
 constexpr const char* kUncertaintyDefinition =
     "standard deviation (px, worst direction) of where a point fixed in the scene would be imaged had the same views "
-    "been taken with other noise; intrinsics and poses move together";
+    "been taken with other noise; intrinsics and poses move together; with models_px, how far models that predict the "
+    "pictures as well differ from it, added in squares";
 
 }  // namespace
 
@@ -37,6 +38,10 @@ void fields(JsonArchive& json, UncertaintyMap& map) {
         json.field(key, *values);
         json.expect(key, values->size() == count, fmt::format("a list of {} numbers or null", count));
     }
+    if (json.reading() ? !json.lacks("models_px") : !map.models_px.empty()) {
+        json.field("models_px", map.models_px)
+            .expect("models_px", map.models_px.size() == count, fmt::format("a list of {} numbers or null", count));
+    }
     json.field("covered", map.covered)
         .expect("covered", map.covered.size() == count, fmt::format("a list of {} truth values", count));
 }
@@ -60,6 +65,7 @@ void fields(JsonArchive& json, ModelChoice& choice) {
     json.field("chosen", choice.chosen)
         .field("why", choice.why)
         .field("folds", choice.folds)
+        .optional("corner_disagreement_px", choice.corner_disagreement_px)
         .field("candidates", choice.candidates)
         .expect("chosen", choice.chosen < static_cast<int>(choice.candidates.size()),
                 "the number of a candidate, from 0");

@@ -23,6 +23,7 @@ struct Trial {
     std::optional<GeometryFit> clean;  // to the points that all candidates share
     CrossValidation validation;
     double excess2 = 0.0;
+    bool predicts_well = false;
 };
 
 std::vector<Trial> make_trials(const GeometryOptions& options) {
@@ -79,11 +80,21 @@ class Choice {
         ModelChoice choice{.candidates = {},
                            .chosen = static_cast<int>(chosen),
                            .folds = trials_[chosen].validation.folds,
-                           .why = why(best, chosen)};
+                           .corner_disagreement_px = std::nullopt,
+                           .why = {}};
+        std::vector<GeometryFit> rivals;
         for (const Trial& trial : trials_) {
             choice.candidates.push_back(trial.candidate);
+            if (trial.predicts_well && &trial != &trials_[chosen]) {
+                rivals.push_back(*trial.fit);
+            }
         }
-        return {*trials_[chosen].fit, trials_[chosen].options, choice};
+        for (const Vec2d& corner : corners(trials_[best].clean->model)) {
+            choice.corner_disagreement_px =
+                std::max(choice.corner_disagreement_px, models_disagreement_px(*trials_[chosen].fit, rivals, corner));
+        }
+        choice.why = why(best, chosen, choice.corner_disagreement_px);
+        return {*trials_[chosen].fit, trials_[chosen].options, choice, std::move(rivals)};
     }
 
   private:
@@ -204,7 +215,8 @@ class Choice {
             }
             trial.excess2 = excess(trial.validation.held_out_squared_px, least);
             const double best2 = std::pow(trials_[best].candidate.held_out_rms_px, 2);
-            if (candidate.corner_px && best2 + trial.excess2 <= kMuchWorse * kMuchWorse * best2) {
+            trial.predicts_well = best2 + trial.excess2 <= kMuchWorse * kMuchWorse * best2;
+            if (candidate.corner_px && trial.predicts_well) {
                 const double half = 0.5 * candidate.halves_px.value_or(0.0);
                 candidate.expected_error_px = std::sqrt(trial.excess2 + half * half + worst * worst);
             }
@@ -240,7 +252,8 @@ class Choice {
         return chosen;
     }
 
-    [[nodiscard]] std::string why(std::size_t best, std::size_t chosen) const {
+    [[nodiscard]] std::string why(std::size_t best, std::size_t chosen,
+                                  const std::optional<double>& corner_disagreement_px) const {
         const ModelCandidate& taken = trials_[chosen].candidate;
         std::string text = fmt::format("{} ({} parameters) predicts held-out points to {:.4f} px", taken.name,
                                        taken.parameters, taken.held_out_rms_px);
@@ -250,6 +263,10 @@ class Choice {
         }
         if (taken.corner_px) {
             text += fmt::format("; its corners are known to {:.4f} px", *taken.corner_px);
+        }
+        if (corner_disagreement_px) {
+            text += fmt::format(", were it the right model; those that predict as well differ there by {:.4f} px",
+                                *corner_disagreement_px);
         }
         text += ".";
         for (std::size_t i = 0; i < trials_.size(); ++i) {

@@ -21,7 +21,7 @@ struct ModelCandidate {
     double held_out_rms_px = 0.0;
     std::optional<double> halves_px;  // rms over the covered frame (cross_validation.h)
     /// Standard deviation of the projection at the worst of the four corners, or as far out towards them as the best
-    /// predictor images anything. None where this model images nothing there.
+    /// predictor images anything, by noise: were this the right model. None where it images nothing there.
     std::optional<double> corner_px;
     /// What the choice minimises, px; none for a candidate that is out.
     std::optional<double> expected_error_px;
@@ -33,6 +33,8 @@ struct ModelChoice {
     std::vector<ModelCandidate> candidates;
     int chosen = 0;
     int folds = 0;
+    /// How far the chosen one and its rivals differ at the worst corner (models_disagreement_px); none without any.
+    std::optional<double> corner_disagreement_px;
     std::string why;  // in words
 
     friend bool operator==(const ModelChoice&, const ModelChoice&) = default;
@@ -42,6 +44,8 @@ struct ChosenGeometry {
     GeometryFit fit;
     GeometryOptions options;
     ModelChoice choice;
+    /// Fits of the same views by the other candidates that predict held-out points as well, whatever their corners.
+    std::vector<GeometryFit> rivals;
 };
 
 /// Fits the candidates and weighs what they say against what they know.

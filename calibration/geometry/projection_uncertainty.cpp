@@ -10,6 +10,8 @@
 namespace lensproof::calibration {
 namespace {
 
+constexpr double kLeast_px = 1e-9;  // that weights are finite
+
 // Derivative of `function` (a pixel) by central differences; the projections are smooth, and a step of 1e-6 of the
 // parameter's own scale leaves nine digits. None where a side is not imaged.
 template <class Function>
@@ -92,6 +94,24 @@ Eigen::Matrix<double, 3, 6> point_by_pose(const Pose& pose, const Vec3d& point, 
     return jacobian;
 }
 
+// In the frame of another fit of the same views, what is at `point` in that of `fit`.
+Vec3d seen_by(const GeometryFit& other, const GeometryFit& fit, const Vec3d& point, bool infinite) {
+    Vec3d mean;
+    for (std::size_t v = 0; v < fit.views.size(); ++v) {
+        const Pose& from = fit.views[v].pose;
+        const Pose& to = other.views[v].pose;
+        const Pose back{.rotation_rad = -1.0 * from.rotation_rad, .translation_mm = {}};
+        const Vec3d moved = turned(to, turned(back, infinite ? point : point - from.translation_mm));
+        mean = mean + (1.0 / static_cast<double>(fit.views.size())) * (infinite ? moved : moved + to.translation_mm);
+    }
+    return mean;
+}
+
+// Of noise, and of models that differ.
+std::optional<double> together(const std::optional<double>& noise, const std::optional<double>& models) {
+    return noise ? std::optional(std::hypot(*noise, models.value_or(0.0))) : std::nullopt;
+}
+
 Vec3d chart_centre(const ChartView& view, const Pose& pose) {
     Vec2d middle;
     for (const Vec2d& p : view.chart_mm) {
@@ -140,6 +160,38 @@ std::optional<double> projection_uncertainty_px(const GeometryFit& fit, const Ve
     return std::sqrt(std::max(symmetric_eigen(variance).values(1), 0.0));
 }
 
+std::optional<double> models_disagreement_px(const GeometryFit& fit, const std::vector<GeometryFit>& rivals,
+                                             const Vec2d& pixel, std::optional<double> distance_mm) {
+    const auto ray = unproject(fit.model, pixel);
+    if (!ray) {
+        return std::nullopt;
+    }
+    struct Opinion {
+        double distance = 0.0;
+        double weight = 0.0;
+    };
+    std::vector<Opinion> opinions;
+    double sum = 0.0;
+    for (const GeometryFit& rival : rivals) {
+        const auto at = project(rival.model, seen_by(rival, fit, distance_mm.value_or(1.0) * *ray, !distance_mm));
+        if (at) {
+            const double distance = std::hypot(at->x - pixel.x, at->y - pixel.y);
+            const double own = projection_uncertainty_px(rival, *at, distance_mm).value_or(distance);
+            sum +=
+                opinions.emplace_back(Opinion{distance, 1.0 / std::max(std::hypot(distance, own), kLeast_px)}).weight;
+        }
+    }
+    std::ranges::sort(opinions, {}, &Opinion::distance);
+    double nearer = 0.0;
+    for (const Opinion& opinion : opinions) {
+        nearer += opinion.weight;
+        if (nearer >= 0.5 * sum) {
+            return opinion.distance;
+        }
+    }
+    return std::nullopt;
+}
+
 std::vector<ChartView> used_points(const std::vector<ChartView>& views, const GeometryFit& fit) {
     std::vector<ChartView> result;
     for (std::size_t v = 0; v < views.size(); ++v) {
@@ -177,7 +229,7 @@ std::vector<bool> covered_pixels(const std::vector<ChartView>& views, const std:
 }
 
 UncertaintyMap uncertainty_map(const GeometryFit& fit, const std::vector<ChartView>& views, int width_px, int height_px,
-                               int columns) {
+                               const std::vector<GeometryFit>& rivals, int columns) {
     UncertaintyMap map;
     map.columns = columns;
     map.rows = std::max(2, static_cast<int>(std::lround(1.0 + (columns - 1.0) * height_px / width_px)));
@@ -194,10 +246,15 @@ UncertaintyMap uncertainty_map(const GeometryFit& fit, const std::vector<ChartVi
     std::vector<Vec2d> pixels;
     for (const double y : map.y_px) {
         for (const double x : map.x_px) {
-            pixels.push_back({x, y});
-            map.far_px.push_back(projection_uncertainty_px(fit, pixels.back()));
-            map.near_px.push_back(charts > 0.0 ? projection_uncertainty_px(fit, pixels.back(), map.near_mm)
+            const Vec2d& pixel = pixels.emplace_back(Vec2d{x, y});
+            const auto models = models_disagreement_px(fit, rivals, pixel);
+            map.far_px.push_back(together(projection_uncertainty_px(fit, pixel), models));
+            map.near_px.push_back(charts > 0.0 ? together(projection_uncertainty_px(fit, pixel, map.near_mm),
+                                                          models_disagreement_px(fit, rivals, pixel, map.near_mm))
                                                : std::nullopt);
+            if (!rivals.empty()) {
+                map.models_px.push_back(models);
+            }
         }
     }
     map.covered = covered_pixels(used_points(views, fit), pixels);

@@ -29,6 +29,7 @@ constexpr double kUnknownPlace = 0.05;
 struct Geometry {
     GeometryFit fit;
     std::optional<ModelChoice> choice;
+    std::vector<GeometryFit> rivals;  // to the choice
 };
 
 std::vector<ChartView> charts_in(const Observations& seen) {
@@ -65,25 +66,26 @@ Geometry fit(const MeasureInput& input, const Observations& seen, const std::vec
     options.disc_diameter_mm = disc_diameter_mm(input.chart);
     if (input.model) {
         options.model = *input.model;
-        return {fit_geometry(charts, seen.width, seen.height, options), std::nullopt};
+        return {fit_geometry(charts, seen.width, seen.height, options), std::nullopt, {}};
     }
     ChosenGeometry chosen = choose_model(charts, seen.width, seen.height, options);
-    return {std::move(chosen.fit), std::move(chosen.choice)};
+    return {std::move(chosen.fit), std::move(chosen.choice), std::move(chosen.rivals)};
 }
 
 void add_geometry(Profile& profile, Observations& seen, const std::vector<ChartView>& charts,
-                  const GeometryFit& geometry) {
+                  const GeometryFit& geometry, const std::vector<GeometryFit>& rivals) {
     const double half_diagonal = half_diagonal_px(profile);
-    profile.geometry = ProfileGeometry{.model = geometry.model,
-                                       .covariance = geometry.covariance,
-                                       .view_standard_error = geometry.view_standard_error,
-                                       .reprojection_rms_px = geometry.rms_px,
-                                       .views_used = static_cast<int>(geometry.views.size()),
-                                       .points_used = geometry.points_used,
-                                       .covered_image_height = geometry.covered_radius_px / half_diagonal,
-                                       .board = geometry.board,
-                                       .uncertainty = uncertainty_map(geometry, charts, seen.width, seen.height),
-                                       .choice = std::nullopt};
+    profile.geometry =
+        ProfileGeometry{.model = geometry.model,
+                        .covariance = geometry.covariance,
+                        .view_standard_error = geometry.view_standard_error,
+                        .reprojection_rms_px = geometry.rms_px,
+                        .views_used = static_cast<int>(geometry.views.size()),
+                        .points_used = geometry.points_used,
+                        .covered_image_height = geometry.covered_radius_px / half_diagonal,
+                        .board = geometry.board,
+                        .uncertainty = uncertainty_map(geometry, charts, seen.width, seen.height, rivals),
+                        .choice = std::nullopt};
     auto fitted = geometry.views.begin();
     for (PictureObservation& picture : seen.pictures) {
         if (!picture.shows_chart()) {
@@ -125,8 +127,9 @@ void add_plane_distortion(Profile& profile, Observations& seen, const std::vecto
 
 // What nobody may overlook of a fit that was made.
 void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const GeometryFit& geometry) {
+    const std::vector<std::optional<double>>& places = profile.geometry->uncertainty->far_px;
     double worst = 0.0;
-    for (const std::optional<double>& uncertainty : profile.geometry->uncertainty->far_px) {
+    for (const std::optional<double>& uncertainty : places) {
         worst = std::max(worst, uncertainty.value_or(0.0));
     }
     const bool is_far = std::ranges::all_of(charts, &ChartView::is_far);
@@ -137,6 +140,12 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
             worst,
             is_far ? "directions that are seen in the corners"
                    : "views of the chart that reach into the corners, tilted by 20° or more"));
+    }
+    if (const auto dark = std::ranges::count(places, false, &std::optional<double>::has_value); dark > 0) {
+        profile.warnings.push_back(fmt::format(
+            "the model images nothing in {:.2g} % of the frame, farthest from its centre: those places are dark, as a "
+            "circular fisheye's corners, or the pictures do not say what the camera does there",
+            100.0 * static_cast<double>(dark) / static_cast<double>(places.size())));
     }
     if (charts.size() == 1 && !is_far) {
         profile.warnings.emplace_back(
@@ -162,7 +171,7 @@ Vec2d measure_geometry(Profile& profile, Observations& seen, const MeasureInput&
     }
     try {
         Geometry geometry = fit(input, seen, charts);
-        add_geometry(profile, seen, charts, geometry.fit);
+        add_geometry(profile, seen, charts, geometry.fit, geometry.rivals);
         add_warnings(profile, charts, geometry.fit);
         profile.geometry->choice = std::move(geometry.choice);
         return centre_px(profile.geometry->model);

@@ -47,9 +47,10 @@ std::string in_words(const calibration::Profile& profile) {
     }
     return fmt::format(
         "A far point is imaged to {:.2g} px (1 σ) at the best place, to {:.2g} px inside the hull of the points "
-        "({:.0f} % of the frame), and to {:.2g} px at the worst place of the frame. Noise alone: what the model cannot "
-        "express is not in it.",
-        best, covered, 100.0 * static_cast<double>(inside) / static_cast<double>(map.covered.size()), anywhere);
+        "({:.0f} % of the frame), and to {:.2g} px at the worst place of the frame. {}",
+        best, covered, 100.0 * static_cast<double>(inside) / static_cast<double>(map.covered.size()), anywhere,
+        map.models_px.empty() ? "Noise alone: what the model cannot express is not in it."
+                              : "Noise, and how far models that predict the pictures as well differ.");
 }
 
 }  // namespace

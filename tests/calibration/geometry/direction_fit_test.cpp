@@ -132,7 +132,7 @@ TEST(DirectionFit, TheMapKnowsNothingNear) {
     ChartView view = starry_view(perspective_camera(), kAnyhow, kWidth, kHeight, 60, 7);
     blur(view, 0.1, 8);
     const GeometryFit fit = fit_geometry({view}, kWidth, kHeight, of(ModelKind::brown_conrady));
-    const UncertaintyMap map = uncertainty_map(fit, {view}, kWidth, kHeight, 5);
+    const UncertaintyMap map = uncertainty_map(fit, {view}, kWidth, kHeight, {}, 5);
     EXPECT_TRUE(map.far_px.at(12));
     EXPECT_FALSE(map.near_px.at(12));
     EXPECT_EQ(map.near_mm, 0.0);

@@ -159,6 +159,28 @@ TEST(CalibrationMeasure, AProfileThatDoesNotKnowTheCornersSaysSo) {
     }
 }
 
+// A fisheye whose r(θ) turns at 167 px, in a frame of 640 × 480: 71 % of it is imaged by nothing, and no place there is
+// known. Good to 5 %: a grid of 25 columns, and a circle whose rim the fit knows to a few pixels.
+TEST(CalibrationMeasure, AProfileSaysHowMuchOfTheFrameItImagesNothingIn) {
+    const KannalaBrandt circular{{150.0, 318.5, 243.0, -0.12, 0.0, 0.0, 0.0}};
+    std::vector<Picture> pictures;
+    for (const Pose& pose : tilted_poses(230.0, 0.4, 50.0)) {
+        pictures.push_back({"view" + std::to_string(pictures.size()), PictureRole::chart, [=] {
+                                formats::Image image = formats::make_image(640, 480, {"Y"});
+                                paint(image, 0, circular, pose, kBoard, 4);
+                                return image;
+                            }});
+    }
+    MeasureInput input = input_with(std::move(pictures));
+    input.model = ModelKind::kannala_brandt;
+    input.geometry.radial_terms = 1;
+    const Profile profile = measure(input);
+    const auto said = std::ranges::find_if(
+        profile.warnings, [](const std::string& w) { return w.find("the model images nothing in") == 0; });
+    ASSERT_NE(said, profile.warnings.end());
+    EXPECT_NEAR(std::stod(said->substr(std::string("the model images nothing in ").size())), 71.5, 5.0) << *said;
+}
+
 // Of OpenCV's thirteen photos of a chessboard each by itself, six have a focal length that is off by more than three of
 // the errors that it states: there is none from view to view.
 TEST(CalibrationMeasure, OnePictureSaysThatItIsOne) {
