@@ -96,7 +96,7 @@ FittedTerms mean_shift(const std::vector<ChromaticPair>& pairs, const Vec2d& cen
 }
 
 // By how much two sets of the same points lie apart in the mean, along the radius or across: the larger of the two, and
-// its standard error. 0 where there are too few.
+// its standard error.
 struct Apart {
     double mean_px = 0.0;
     double standard_error_px = 0.0;
@@ -104,8 +104,9 @@ struct Apart {
     [[nodiscard]] bool matters() const { return mean_px > kColoursApart_px && mean_px > 3.0 * standard_error_px; }
 };
 
-Apart apart(const std::vector<std::optional<Vec2d>>& a, const std::vector<std::optional<Vec2d>>& b,
-            const Vec2d& centre) {
+// None where too few are in both.
+std::optional<Apart> apart(const std::vector<std::optional<Vec2d>>& a, const std::vector<std::optional<Vec2d>>& b,
+                           const Vec2d& centre) {
     std::vector<ChromaticPair> pairs;
     for (std::size_t i = 0; i < a.size(); ++i) {
         if (a[i] && b[i]) {
@@ -113,11 +114,11 @@ Apart apart(const std::vector<std::optional<Vec2d>>& a, const std::vector<std::o
         }
     }
     if (pairs.size() < kFewestBandPairs) {
-        return {};
+        return std::nullopt;
     }
     const FittedTerms terms = mean_shift(pairs, centre);
     const std::size_t k = std::abs(terms.values[1]) > std::abs(terms.values[0]) ? 1 : 0;
-    return {std::abs(terms.values[k]), std::sqrt(terms.covariance[3 * k])};
+    return Apart{std::abs(terms.values[k]), std::sqrt(terms.covariance[3 * k])};
 }
 
 std::string colour_name(char colour) {
@@ -130,12 +131,17 @@ const formats::Image& trusted(const BandPlanes& planes, const std::string& name,
     for (std::size_t i = 1; i < planes.colours.size(); ++i) {
         const MosaicColour& strongest = planes.colours.front();
         const MosaicColour& other = planes.colours[i];
-        const Apart by = apart(locate(strongest.plane), locate(other.plane), centre);
-        if (by.matters()) {
+        const auto by = apart(locate(strongest.plane), locate(other.plane), centre);
+        if (!by) {
+            profile.warnings.push_back(fmt::format(
+                "{}: fewer than {} points are seen by {} and by {} pixels, which are mixed without knowing that they "
+                "agree about places",
+                name, kFewestBandPairs, colour_name(strongest.colour), colour_name(other.colour)));
+        } else if (by->matters()) {
             profile.warnings.push_back(fmt::format(
                 "{}: measured by the {} pixels alone, the strongest: the {} ones are {:.2f} ± {:.2f} px off "
                 "in the mean, so that they see other light",
-                name, colour_name(strongest.colour), colour_name(other.colour), by.mean_px, by.standard_error_px));
+                name, colour_name(strongest.colour), colour_name(other.colour), by->mean_px, by->standard_error_px));
             return strongest.plane;
         }
     }

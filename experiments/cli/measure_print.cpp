@@ -152,6 +152,10 @@ void print_profile(const calibration::Profile& profile) {
             if (names[i] == calibration::kStretchY && values[i] == 0.0) {
                 continue;  // square pixels
             }
+            if (geometry.standard_error(i) == 0.0) {
+                print("{:22} {:.6g} (held)\n", names[i], values[i]);
+                continue;
+            }
             print("{:22} {:.6g} ± {:.2g}", names[i], values[i], geometry.standard_error(i));
             print("{}\n", geometry.view_standard_error.empty()
                               ? ""

@@ -118,6 +118,7 @@ TEST(Coatings, AreListedWithWhatTheyReflect) {
     }
     for (const auto& [arguments, words] :
          {std::pair{std::vector<std::string>{"coatings", "mgf3"}, "did you mean \"mgf2\"?"},
+          std::pair{std::vector<std::string>{"chart", "checkerbord", "-o", "b.pdf"}, "did you mean \"checkerboard\"?"},
           {{"coatings", "--on", "GLAS"}, "--on GLAS"},
           {{"coatings", "short.toml"}, "short.toml: 400 nm is outside the range of a coating's layer"}}) {
         const Outcome refused = place.run(arguments);

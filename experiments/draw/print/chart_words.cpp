@@ -1,13 +1,13 @@
 #include "experiments/draw/print/chart_words.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "engine/base/input_error.h"
+#include "engine/base/nearest_name.h"
 #include "engine/scene/chart/chart_keys.h"
 
 namespace lensproof::draw {
@@ -114,8 +114,8 @@ void check_kind(const std::string& name) {
     for (const scene::ChartKind& kind : scene::chart_kinds()) {
         why += kind.name == name ? fmt::format(" ({})", kind.not_printed) : "";
     }
-    throw InputError(fmt::format("a chart of kind {} cannot be printed{}: expected one of {}", name, why,
-                                 fmt::join(printable_kinds(), ", ")));
+    throw InputError(fmt::format("a chart of kind {} cannot be printed{}{}", name, why,
+                                 complete_name_hint(name, printable_kinds())));
 }
 
 /// Refuses what the kind does not have.

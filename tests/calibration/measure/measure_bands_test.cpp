@@ -113,6 +113,21 @@ TEST(CalibrationBands, ColoursThatSeeOtherLightAreNotMixed) {
     }
 }
 
+// A filter that lets the red pixels see nothing but fog: they show no disc, so that nothing says whether they agree.
+TEST(CalibrationBands, ColoursThatCannotBeHeldAgainstEachOtherAreNamed) {
+    formats::Image foggy = mosaic_of(band(450.0));
+    for (int y = 1; y < foggy.height; y += 2) {
+        for (int x = 0; x < foggy.width; x += 2) {
+            foggy.at(x, y, 0) = 0.3F;
+        }
+    }
+    const formats::Image clear = mosaic_of(band(550.0));
+    const Profile profile = measure_bands(two_bands([&](double nm) { return planes_of(nm < 500.0 ? foggy : clear); }));
+    ASSERT_EQ(profile.warnings.size(), 1u);
+    EXPECT_NE(profile.warnings[0].find("by blue and by red pixels, which are mixed"), std::string::npos)
+        << profile.warnings[0];
+}
+
 // What the corner needs is points near it: a chart that is larger than the frame, with discs so small that whole ones
 // come close. Then the points reach an image height of 0.9, and the curve and its terms carried on to the corner itself
 // are within 0.02 px at 1 % noise.
