@@ -263,10 +263,10 @@ class Choice {
         }
         if (taken.corner_px) {
             text += fmt::format("; its corners are known to {:.4f} px", *taken.corner_px);
-        }
-        if (corner_disagreement_px) {
-            text += fmt::format(", were it the right model; those that predict as well differ there by {:.4f} px",
-                                *corner_disagreement_px);
+            if (corner_disagreement_px) {
+                text += fmt::format(", were it the right model; those that predict as well differ there by {:.4f} px",
+                                    *corner_disagreement_px);
+            }
         }
         text += ".";
         for (std::size_t i = 0; i < trials_.size(); ++i) {

@@ -45,10 +45,14 @@ std::string in_words(const calibration::Profile& profile) {
     if (imaged == 0) {
         return "nothing in the frame is imaged by the model";
     }
+    const auto px = [](double value) {
+        return value < 100.0 ? fmt::format("{:.2g} px", value) : fmt::format("{:.0f} px", value);
+    };
     return fmt::format(
-        "A far point is imaged to {:.2g} px (1 σ) at the best place, to {:.2g} px inside the hull of the points "
-        "({:.0f} % of the frame), and to {:.2g} px at the worst place of the frame. {}",
-        best, covered, 100.0 * static_cast<double>(inside) / static_cast<double>(map.covered.size()), anywhere,
+        "A far point is imaged to {} (1 σ) at the best place, to {} inside the hull of the points "
+        "({:.0f} % of the frame), and to {} at the worst place of the frame. {}",
+        px(best), px(covered), 100.0 * static_cast<double>(inside) / static_cast<double>(map.covered.size()),
+        px(anywhere),
         map.models_px.empty() ? "Noise alone: what the model cannot express is not in it."
                               : "Noise, and how far models that predict the pictures as well differ.");
 }

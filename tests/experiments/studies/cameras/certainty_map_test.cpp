@@ -37,10 +37,15 @@ TEST(CertaintyMap, SaysWhatItShows) {
     EXPECT_EQ(range.low, 0.01);
     EXPECT_EQ(range.high, 0.4);  // what is extrapolated does not stretch the colours
     const std::string svg = draw::frame_map_svg(map.frame, range, "#0072b2");
-    for (const char* part :
-         {"0.01 px (1 σ) at the best place", "0.04 px inside the hull", "67 % of the frame", "7 px at"}) {
+    for (const char* part : {"0.01 px (1 σ) at the best place", "0.04 px inside the hull", "67 % of the frame",
+                             "7 px at", "Noise alone"}) {
         EXPECT_TRUE(says(map.caption, part));
     }
+    calibration::Profile beside_rivals = profile;
+    beside_rivals.geometry->uncertainty->models_px = std::vector<std::optional<double>>(6, 0.0);
+    beside_rivals.geometry->uncertainty->far_px.back() = 1357.0;
+    EXPECT_TRUE(says(certainty_map(beside_rivals, "Small").caption, "1357 px at the worst place"));
+    EXPECT_TRUE(says(certainty_map(beside_rivals, "Small").caption, "how far models that predict the pictures"));
     EXPECT_TRUE(says(svg, "From 4 points"));  // the outlier is none of them
     EXPECT_FALSE(says(svg, "nan"));
     const std::string page =
