@@ -93,6 +93,38 @@ bool embree_finds_any(Query& query) {
     return ray.tfar < 0.0F;
 }
 
+/// The first of a scene's few triangles.
+TriangleMeeting first_triangle(const SceneGeometry::Data& data, const Stretch<double>& ray) {
+    return analytic_kernels().meet_first_triangle(data.triangles, ray,
+                                                  largest_coordinate(ray.origin) + data.mesh_reach_mm);
+}
+
+/// Goes on with what is met of those; what lies in the seam around a triangle is taken to its edge.
+void meet_few_triangles(Query& query) {
+    if (const auto [meeting, triangle] = first_triangle(*query.data, query.ray); triangle >= 0) {
+        const MeshTriangle& met = query.data->triangle_of[static_cast<std::size_t>(triangle)];
+        const double b1 = std::max(meeting.b1, 0.0);
+        const double b2 = std::max(meeting.b2, 0.0);
+        const double sum = std::max(b1 + b2, 1.0);
+        query.nearest.offer({.at = meeting.at, .b1 = b1 / sum, .b2 = b2 / sum}, met.object, met.primitive);
+    }
+}
+
+/// Goes on from the spheres and quads that are tested one by one.
+void meet_rest(Query& query) {
+    if (!query.data->triangles.empty()) {
+        meet_few_triangles(query);
+    }
+    if (query.data->has_embree_geometry) {
+        ask_embree(query);
+    }
+}
+
+bool rest_is_met(Query& query) {
+    return (!query.data->triangles.empty() && first_triangle(*query.data, query.ray).triangle >= 0) ||
+           (query.data->has_embree_geometry && embree_finds_any(query));
+}
+
 SurfaceHit hit_at(const SceneGeometry::Data& data, const Stretch<double>& ray, const Nearest& nearest) {
     const PlacedObject& met = data.objects[nearest.object];
     const Meeting<double>& at = nearest.meeting;
@@ -240,9 +272,7 @@ std::optional<SurfaceHit> intersect(const SceneGeometry& scene, const Vec3d& ori
             }
         }
     }
-    if (data.has_embree_geometry) {
-        ask_embree(query);
-    }
+    meet_rest(query);
     return query.nearest.is_one() ? std::optional(hit_at(data, query.ray, query.nearest)) : std::nullopt;
 }
 
@@ -261,9 +291,7 @@ void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
         if (columns.object[j] >= 0.0) {
             query.nearest = {columns.meeting(j), data.analytic[static_cast<std::size_t>(columns.object[j])].object};
         }
-        if (data.has_embree_geometry) {
-            ask_embree(query);
-        }
+        meet_rest(query);
         if (query.nearest.is_one()) {
             hits[i] = hit_at(data, query.ray, query.nearest);
         }
@@ -279,7 +307,7 @@ bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to)
     return (data.tests_analytic_one_by_one &&
             std::ranges::any_of(data.analytic,
                                 [&](const AnalyticObject& object) { return meet(object, query.ray).is_met; })) ||
-           (data.has_embree_geometry && embree_finds_any(query));
+           rest_is_met(query);
 }
 
 void find_occluded(const SceneGeometry& scene, std::span<const Segment> segments,
@@ -291,8 +319,8 @@ void find_occluded(const SceneGeometry& scene, std::span<const Segment> segments
     };
     meet_in_columns(data, segments.size(), stretch, [&](std::size_t i, const RayColumns& columns, std::size_t j) {
         Query query{.data = &data, .ray = stretches[i % stretches.size()]};
-        const bool is_blocked = is_usable(query.ray.origin, query.ray.direction) &&
-                                (columns.object[j] >= 0.0 || (data.has_embree_geometry && embree_finds_any(query)));
+        const bool is_blocked =
+            is_usable(query.ray.origin, query.ray.direction) && (columns.object[j] >= 0.0 || rest_is_met(query));
         are_occluded[i] = is_blocked ? 1 : 0;
     });
 }

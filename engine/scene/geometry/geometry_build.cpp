@@ -248,6 +248,50 @@ AnalyticObject analytic_object(const PlacedObject& placed, std::uint32_t index) 
     return made;
 }
 
+/// The affine function of a point that is `gradient` · (point − zero).
+void set_function(TriangleBlock::Function& function, std::size_t lane, const Vec3d& gradient, const Vec3d& zero) {
+    function.x[lane] = gradient.x;
+    function.y[lane] = gradient.y;
+    function.z[lane] = gradient.z;
+    function.at_origin[lane] = -dot(gradient, zero);
+}
+
+void add_triangle(SceneGeometry::Data& data, const TriangleSides& sides, const MeshTriangle& triangle) {
+    const std::size_t lane = data.triangle_of.size() % TriangleBlock::kLanes;
+    if (lane == 0) {
+        data.triangles.emplace_back();
+    }
+    data.triangle_of.push_back(triangle);
+    TriangleBlock& block = data.triangles.back();
+    const Vec3d area = cross(sides.to_second, sides.to_third);
+    const double per_area2 = 1.0 / dot(area, area);
+    const Vec3d b1 = per_area2 * cross(sides.to_third, area);
+    const Vec3d b2 = per_area2 * cross(area, sides.to_second);
+    set_function(block.height, lane, std::sqrt(per_area2) * area, sides.first);
+    set_function(block.b1, lane, b1, sides.first);
+    set_function(block.b2, lane, b2, sides.first);
+    block.b1_slope[lane] = length(b1);
+    block.b2_slope[lane] = length(b2);
+}
+
+/// A mesh that is instanced is in coordinates of its own, and Embree's.
+void gather_few_triangles(SceneGeometry::Data& data) {
+    constexpr std::size_t kFewTriangles = 48;  // then Embree is as fast
+    std::size_t count = 0;
+    for (const PlacedObject& placed : data.objects) {
+        if (const auto* mesh = std::get_if<TriangleMesh>(placed.shape)) {
+            count += data.uses[placed.object.shape] == 1 ? mesh->triangles.size() : kFewTriangles + 1;
+        }
+    }
+    for (std::uint32_t i = 0; count <= kFewTriangles && i < data.objects.size(); ++i) {
+        if (const auto* mesh = std::get_if<TriangleMesh>(data.objects[i].shape)) {
+            for (std::uint32_t k = 0; k < mesh->triangles.size(); ++k) {
+                add_triangle(data, sides(*mesh, k), {i, k});
+            }
+        }
+    }
+}
+
 void build(SceneGeometry::Data& data) {
     data.device.reset(rtcNewDevice(nullptr));
     if (!data.device) {
@@ -255,11 +299,19 @@ void build(SceneGeometry::Data& data) {
     }
     data.scene = new_scene(data);
     data.instanced.resize(data.shapes.size());
+    gather_few_triangles(data);
+    std::size_t met_by_embree = 0;
     for (std::uint32_t i = 0; i < data.objects.size(); ++i) {
         const PlacedObject& placed = data.objects[i];
         if (!std::holds_alternative<TriangleMesh>(*placed.shape)) {
             data.analytic.push_back(analytic_object(placed, i));
-        } else if (data.uses[placed.object.shape] == 1) {
+            continue;
+        }
+        if (!data.triangles.empty()) {
+            continue;
+        }
+        ++met_by_embree;
+        if (data.uses[placed.object.shape] == 1) {
             attach_mesh(data, data.scene.get(), data.mesh(i), i);
         } else {
             attach_instance(data, i);
@@ -270,7 +322,7 @@ void build(SceneGeometry::Data& data) {
     if (!data.tests_analytic_one_by_one) {
         attach_analytic(data);
     }
-    data.has_embree_geometry = !data.tests_analytic_one_by_one || data.analytic.size() < data.objects.size();
+    data.has_embree_geometry = !data.tests_analytic_one_by_one || met_by_embree > 0;
     rtcCommitScene(data.scene.get());
     if (const RTCError error = rtcGetDeviceError(data.device.get()); error == RTC_ERROR_OUT_OF_MEMORY) {
         throw std::bad_alloc();

@@ -28,12 +28,20 @@ struct PlacedObject {
         facets;  // of a quad; of each triangle of a mesh, if that is kept (geometry_build.cpp); else none
 };
 
+struct MeshTriangle {
+    std::uint32_t object = 0;
+    std::uint32_t primitive = 0;
+};
+
 struct SceneGeometry::Data {
     std::vector<Shape> shapes;
     std::vector<int> uses;  // of each shape, by objects
     std::vector<PlacedObject> objects;
     std::vector<AnalyticObject> analytic;    // the spheres and quads among them, the primitives of one Embree geometry
     bool tests_analytic_one_by_one = false;  // a handful is sooner tested so than found by Embree
+    /// Those of all meshes, where they are so few that each ray is tested against each; then Embree knows of none.
+    std::vector<TriangleBlock> triangles;
+    std::vector<MeshTriangle> triangle_of;  // by its place in these
     bool has_embree_geometry = false;
     std::vector<std::string> remarks;
     Box bounds;

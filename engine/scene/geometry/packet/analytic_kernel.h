@@ -1,4 +1,5 @@
-// engine/scene/geometry/packet/analytic_kernel.h — many rays against spheres and quads, for compilers to vectorise.
+// engine/scene/geometry/packet/analytic_kernel.h — rays against spheres, quads and triangles, for compilers to
+// vectorise.
 //
 // Only a file for each level includes this (.ci/rooms.cmake), compiled for its own instructions, so what it
 // defines must not be shared with code for other machines: everything here is a template over the packs' Abi, and
@@ -9,9 +10,8 @@
 
 namespace lensproof::scene {
 
-template <class Numbers>
-Vec3<Numbers> load_vector(const RayColumns::Column& x, const RayColumns::Column& y, const RayColumns::Column& z,
-                          std::size_t i) {
+template <class Numbers, class Column>
+Vec3<Numbers> load_vector(const Column& x, const Column& y, const Column& z, std::size_t i) {
     return {Numbers::load(x.data() + i), Numbers::load(y.data() + i), Numbers::load(z.data() + i)};
 }
 
@@ -40,10 +40,54 @@ template <class Abi>
     }
 }
 
+template <class Numbers>
+LaneFunction<Numbers> load_function(const TriangleBlock::Function& function, std::size_t lane) {
+    return {.gradient = load_vector<Numbers>(function.x, function.y, function.z, lane),
+            .at_origin = Numbers::load(function.at_origin.data() + lane)};
+}
+
+template <class Abi>
+[[gnu::flatten]] TriangleMeeting meet_first_triangle(std::span<const TriangleBlock> blocks, const Stretch<double>& ray,
+                                                     double reach_mm) {
+    using Numbers = Pack<double, Abi>;
+    const auto everywhere = [](const Vec3d& v) { return Vec3<Numbers>{Numbers(v.x), Numbers(v.y), Numbers(v.z)}; };
+    Stretch<Numbers> rays{.origin = everywhere(ray.origin),
+                          .direction = everywhere(ray.direction),
+                          .from = Numbers(ray.from),
+                          .to = Numbers(ray.to)};
+    Numbers b1(0.0);
+    Numbers b2(0.0);
+    Numbers triangle(-1.0);
+    Numbers here = Numbers::iota();
+    for (const TriangleBlock& block : blocks) {
+        for (std::size_t lane = 0; lane < TriangleBlock::kLanes; lane += Numbers::kLanes) {
+            const auto [is_met, meeting] =
+                meet_triangles(load_function<Numbers>(block.height, lane), load_function<Numbers>(block.b1, lane),
+                               load_function<Numbers>(block.b2, lane), Numbers::load(block.b1_slope.data() + lane),
+                               Numbers::load(block.b2_slope.data() + lane), reach_mm, rays);
+            rays.to = select(is_met, meeting.at, rays.to);
+            b1 = select(is_met, meeting.b1, b1);
+            b2 = select(is_met, meeting.b2, b2);
+            triangle = select(is_met, here, triangle);
+            here = here + Numbers(Numbers::kLanes);
+        }
+    }
+    TriangleMeeting first;
+    for (int lane = 0; lane < Numbers::kLanes; ++lane) {
+        const int index = static_cast<int>(triangle[lane]);
+        const double at = rays.to[lane];
+        const bool is_before = at < first.meeting.at || (at == first.meeting.at && index < first.triangle);
+        if (index >= 0 && (first.triangle < 0 || is_before)) {
+            first = {.meeting = {.at = at, .b1 = b1[lane], .b2 = b2[lane]}, .triangle = index};
+        }
+    }
+    return first;
+}
+
 template <>
 AnalyticKernels analytic_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
     using Abi = AbiOf<SimdLevel::LENSPROOF_LEVEL, double>;
-    return {.meet_nearest = meet_nearest<Abi>};
+    return {.meet_nearest = meet_nearest<Abi>, .meet_first_triangle = meet_first_triangle<Abi>};
 }
 
 }  // namespace lensproof::scene

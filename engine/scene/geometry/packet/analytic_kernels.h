@@ -1,5 +1,5 @@
-// engine/scene/geometry/packet/analytic_kernels.h — many rays against a scene's spheres and quads, a loop for each
-// width of packets.
+// engine/scene/geometry/packet/analytic_kernels.h — rays against a scene's spheres, quads and few triangles, a loop
+// for each width of packets.
 #pragma once
 #include <array>
 #include <optional>
@@ -28,10 +28,19 @@ struct alignas(64) RayColumns {
     [[nodiscard]] Meeting<double> meeting(std::size_t i) const { return {.at = to[i], .b1 = b1[i], .b2 = b2[i]}; }
 };
 
+/// The first of many triangles on a ray; −1: none.
+struct TriangleMeeting {
+    Meeting<double> meeting;
+    int triangle = -1;
+};
+
 /// The loops of one level; all levels yield the same bits.
 struct AnalyticKernels {
     /// Which of the objects each ray meets first; of two that are equally far, the one before.
     void (*meet_nearest)(std::span<const AnalyticObject> objects, RayColumns& rays);
+    /// Which of the triangles one ray meets first, as above. `reach_mm`: of the ray's origin and the triangles.
+    TriangleMeeting (*meet_first_triangle)(std::span<const TriangleBlock> blocks, const Stretch<double>& ray,
+                                           double reach_mm);
 };
 
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.

@@ -93,4 +93,66 @@ TEST(AnalyticKernels, EveryLevelMeetsWhatSingleRaysDo) {
     EXPECT_GT(met_by_kind[1], 200);
 }
 
+/// What the scalar functions say of one triangle after the other.
+TriangleMeeting one_by_one(const std::vector<TriangleBlock>& blocks, const Stretch<double>& ray, double reach_mm) {
+    const auto function = [](const TriangleBlock::Function& f, std::size_t lane) {
+        return LaneFunction<double>{{f.x[lane], f.y[lane], f.z[lane]}, f.at_origin[lane]};
+    };
+    TriangleMeeting first;
+    Stretch<double> rest = ray;
+    for (std::size_t i = 0; i < blocks.size() * TriangleBlock::kLanes; ++i) {
+        const TriangleBlock& block = blocks[i / TriangleBlock::kLanes];
+        const std::size_t lane = i % TriangleBlock::kLanes;
+        const auto [is_met, meeting] =
+            meet_triangles(function(block.height, lane), function(block.b1, lane), function(block.b2, lane),
+                           block.b1_slope[lane], block.b2_slope[lane], reach_mm, rest);
+        if (is_met) {
+            rest.to = meeting.at;
+            first = {.meeting = meeting, .triangle = static_cast<int>(i)};
+        }
+    }
+    return first;
+}
+
+// Of triangles, too, some of which stand there twice; lanes of zeros are met by nothing.
+TEST(AnalyticKernels, EveryLevelMeetsTheFirstTriangle) {
+    std::mt19937_64 random(2);
+    std::vector<TriangleBlock> blocks(4);
+    const auto set = [](TriangleBlock::Function& function, std::size_t lane, const Vec3d& gradient, double at_origin) {
+        function.x[lane] = gradient.x;
+        function.y[lane] = gradient.y;
+        function.z[lane] = gradient.z;
+        function.at_origin[lane] = at_origin;
+    };
+    for (std::size_t i = 0; i < 3 * TriangleBlock::kLanes; ++i) {
+        TriangleBlock& block = blocks[i / TriangleBlock::kLanes];
+        const std::size_t lane = i % TriangleBlock::kLanes;
+        set(block.height, lane, random_direction(random), uniform(random, -3, 3));
+        set(block.b1, lane, uniform(random, 0.1, 0.3) * random_direction(random), uniform(random, 0, 0.4));
+        set(block.b2, lane, uniform(random, 0.1, 0.3) * random_direction(random), uniform(random, 0, 0.4));
+        block.b1_slope[lane] = block.b2_slope[lane] = 0.3;
+    }
+    blocks[2] = blocks[0];
+    int met = 0;
+    for (int i = 0; i < 10000; ++i) {
+        const Stretch<double> ray{.origin = {uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
+                                  .direction = random_direction(random),
+                                  .from = uniform(random, 0, 2),
+                                  .to = i % 3 == 0 ? 8.0 : 1e30};
+        const TriangleMeeting expected = one_by_one(blocks, ray, 9.0);
+        met += expected.triangle >= 0 ? 1 : 0;
+        ASSERT_LT(expected.triangle, 16);
+        for (const SimdLevel level : available_simd_levels()) {
+            const TriangleMeeting found = analytic_kernels(level).meet_first_triangle(blocks, ray, 9.0);
+            ASSERT_EQ(found.triangle, expected.triangle) << simd_name(level);
+            if (expected.triangle >= 0) {
+                ASSERT_EQ(found.meeting.at, expected.meeting.at) << simd_name(level);
+                ASSERT_EQ(found.meeting.b1, expected.meeting.b1) << simd_name(level);
+                ASSERT_EQ(found.meeting.b2, expected.meeting.b2) << simd_name(level);
+            }
+        }
+    }
+    EXPECT_GT(met, 2000);
+}
+
 }  // namespace lensproof::scene::analytic_kernels_test
