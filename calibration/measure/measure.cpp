@@ -143,7 +143,7 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
     }
     if (const auto dark = std::ranges::count(places, false, &std::optional<double>::has_value); dark > 0) {
         profile.warnings.push_back(fmt::format(
-            "the model images nothing in {:.2g} % of the frame, farthest from its centre: those places are dark, as a "
+            "the model images nothing in {:.1f} % of the frame, farthest from its centre: those places are dark, as a "
             "circular fisheye's corners, or the pictures do not say what the camera does there",
             100.0 * static_cast<double>(dark) / static_cast<double>(places.size())));
     }

@@ -253,8 +253,8 @@ Leaks leaks_of(const TriangleMesh& mesh_in_world, const Vec3d& centre, const std
     return leaks;
 }
 
-// A million rays. Of those that are aimed at a vertex to the last bit Embree's robust mode tells of no triangle 1 in
-// 100,000 times from inside and 2 in 10,000 from outside.
+// A million rays. Of those that are aimed at a vertex to the last bit Embree's robust mode tells of no triangle once in
+// 270,000 from inside and 3 times in 10,000 from outside.
 TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndNearlyAtVertices) {
     const TriangleMesh mesh = icosphere(100.0, 3);
     const AffineMap far_away = at({31.0, -170.0, 905.0}, about_x(33.0));
@@ -264,7 +264,7 @@ TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndNearlyAtVertices) {
     const Leaks leaks = leaks_of(std::get<TriangleMesh>(moved.shape(0)), far_away.translation, {&moved, &instanced},
                                  0.15);  // facets lean by 0.095
     EXPECT_EQ(leaks.at_edges, 0);
-    EXPECT_LE(leaks.at_vertices, 18 + 4 * 4);  // 18 were seen, with a deviation of 4
+    EXPECT_LE(leaks.at_vertices, 19 + 4 * 4);  // 19 were seen, with a deviation of 4
 }
 
 // A few triangles are met in double, in seams as wide as its rounding.
