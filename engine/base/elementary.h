@@ -52,6 +52,16 @@ constexpr T nearest_whole(const T& x) {
 
 }  // namespace elementary_detail
 
+/// e^x of |x| ≤ kNearZero as `exponential_of_negative` has it, of a number or of a packet's lanes.
+template <class T>
+constexpr T exponential_near_zero(const T& x) {
+    return elementary_detail::factorial_series < 0, std::is_same_v<typename LaneOf<T>::Number, double> ? 14 : 8,
+           1 > (x);
+}
+/// Below ln 2 / 2: no whole power of two is taken out.
+template <std::floating_point Number>
+inline constexpr auto kNearZero = Number(0.34);
+
 /// e^x of x ≤ 0, for float and double: within 2 ulp, and 0 below the smallest normal number.
 template <std::floating_point T>
 constexpr T exponential_of_negative(const T& x) {
@@ -65,7 +75,7 @@ constexpr T exponential_of_negative(const T& x) {
     constexpr T kLn2Low = is_double ? T(0x1.cf79abc9e3b3ap-40) : T(0x1.0bfbe8p-15);
     const int k = static_cast<int>(x * T(1.4426950408889634) - T(0.5));
     const T r = (x - T(k) * kLn2High) - T(k) * kLn2Low;
-    const T of_rest = elementary_detail::factorial_series < 0, is_double ? 14 : 8, 1 > (r);
+    const T of_rest = exponential_near_zero(r);
     if constexpr (is_double) {
         return of_rest * std::bit_cast<double>(static_cast<std::uint64_t>(1023 + k) << 52U);
     } else {

@@ -1,6 +1,7 @@
 // engine/base/pack.h — several numbers in step, as a number type for the tracer.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <experimental/simd>
 #include <type_traits>
 
@@ -86,6 +87,13 @@ class Pack {
     template <class Entry, class Number>
     static Pack gather(const Entry* table, const Number* index) {
         return Pack(gathered<Lanes>(table, index));
+    }
+
+    /// The four numbers of rows[index[lane]] for each lane.
+    template <class Row>
+    static std::array<Pack, 4> gather_rows(const Row* rows, const std::uint16_t* index) {
+        const std::array<Lanes, 4> columns = gathered_rows<Lanes>(rows, index);
+        return {Pack(columns[0]), Pack(columns[1]), Pack(columns[2]), Pack(columns[3])};
     }
 
     [[nodiscard]] const Lanes& lanes() const { return lanes_; }

@@ -52,37 +52,13 @@ std::vector<typename LensView<T>::Surface> surface_table(const TraceLens<T>& len
     return table;
 }
 
-template <class T>
-std::vector<typename LensView<T>::Indices> index_table(const SpectralLens<T>& lens) {
-    std::vector<typename LensView<T>::Indices> table;
-    for (const typename SpectralLens<T>::Indices& of : lens.indices()) {
-        for (int i = 0; i < lens.wavelengths(); ++i) {
-            table.push_back({of.before[i], of.after[i], of.forward_ratio[i], of.reverse_ratio[i]});
-        }
-    }
-    return table;
-}
-
-template <class T>
-std::vector<T> attenuation_table(const SpectralLens<T>& lens) {
-    std::vector<T> table;
-    const auto append = [&](const T* column) { table.insert(table.end(), column, column + lens.wavelengths()); };
-    if (lens.absorbs()) {
-        append(lens.indices().front().attenuation_before);
-        for (const typename SpectralLens<T>::Indices& of : lens.indices()) {
-            append(of.attenuation_after);
-        }
-    }
-    return table;
-}
-
 }  // namespace
 
 template <class T>
 DeviceLens<T>::DeviceLens(const device::Device& device, const SpectralLens<T>& lens) {
     const auto surfaces = parcel_.add(surface_table(lens.at().front()));
-    const auto indices = parcel_.add(index_table(lens));
-    const auto attenuation = parcel_.add(attenuation_table(lens));
+    const auto indices = parcel_.add(lens.table());
+    const auto attenuation = parcel_.add(lens.attenuation());
     std::vector<SpecialPlaces<T>> places;
     for (const TraceLens<T>& at : lens.at()) {
         for (const SpecialSurface<T>& special : at.specials) {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/optics/stop_mask.h"
+#include "engine/optics/surface_indices.h"
 #include "engine/optics/trace.h"
 
 namespace lensproof::optics {
@@ -25,17 +26,11 @@ struct LensView {
         static constexpr std::int32_t kFromFarForward = 2;
         static constexpr std::int32_t kFromFarReverse = 4;
     };
-    struct alignas(4 * sizeof(T)) Indices {  // at one
-        T before;
-        T after;
-        T forward_ratio;
-        T reverse_ratio;
-    };
 
     const Surface* surfaces = nullptr;
-    const Indices* indices = nullptr;   // [surface][wavelength]
-    const Special* specials = nullptr;  // [wavelength][special]
-    const T* attenuation = nullptr;     // [medium, that in front of the first surface too][wavelength]; or null
+    const SurfaceIndices<T>* indices = nullptr;  // [surface][wavelength]
+    const Special* specials = nullptr;           // [wavelength][special]
+    const T* attenuation = nullptr;  // [medium, that in front of the first surface too][wavelength]; or null
     int surface_count = 0;
     int special_count = 0;
     int wavelengths = 0;
@@ -59,7 +54,7 @@ struct LensView {
             [[nodiscard]] constexpr std::size_t size() const { return static_cast<std::size_t>(lens.surface_count); }
             constexpr TraceSurface<T> operator[](int i) const {
                 const Surface surface = lens.surfaces[i];
-                const Indices& index = lens.indices[i * lens.wavelengths + wavelength];
+                const SurfaceIndices<T>& index = lens.indices[i * lens.wavelengths + wavelength];
                 return {.curvature = surface.curvature,
                         .vertex_z = surface.vertex_z,
                         .semi_diameter_squared = surface.semi_diameter_squared,

@@ -9,6 +9,7 @@
 #include "engine/optics/intersect.h"
 #include "engine/optics/packet/clear_layers.h"
 #include "engine/optics/packet/ghost_kernels.h"
+#include "engine/optics/packet/media.h"
 #include "engine/optics/refract.h"
 #include "engine/optics/surface_shape.h"
 
@@ -76,10 +77,9 @@ class GhostTracer {
     [[nodiscard]] Numbers by_wavelength(const double* table) const { return Numbers::gather(table, wavelengths_); }
 
     void cross(int surface, bool is_forward, const Numbers& distance) {
-        if (lens_.absorbs) {
-            const auto& of = lens_.indices[surface];
-            optical_depth_ =
-                optical_depth_ + by_wavelength(is_forward ? of.attenuation_before : of.attenuation_after) * distance;
+        const auto& of = lens_.indices[surface];
+        if (const double* attenuation = is_forward ? of.attenuation_before : of.attenuation_after) {
+            optical_depth_ = optical_depth_ + by_wavelength(attenuation) * distance;
         }
     }
 
@@ -195,17 +195,14 @@ class GhostTracer {
         }
         going_ = going_ && (by_blades ? open < Numbers(1.0) : open > Numbers(0.0));
 
-        const auto& of = lens_.indices[index];
-        const Numbers ratio = by_wavelength(is_forward ? of.forward_ratio : of.reverse_ratio);
-        const Numbers before = by_wavelength(is_forward ? of.before : of.after);
-        const Numbers after = by_wavelength(is_forward ? of.after : of.before);
+        const auto media = Media<Numbers>::of(lens_.indices[index].at, is_forward, wavelengths_);
         const Numbers heading(is_forward ? 1.0 : -1.0);
         const Numbers& cos_incidence = met.at.cos_incidence;
         const Refraction<Numbers> bent =
             special != nullptr && special->has_shape
-                ? refract(direction, met.normal, cos_incidence, met.at.sin2_incidence, ratio)
+                ? refract(direction, met.normal, cos_incidence, met.at.sin2_incidence, media.ratio)
                 : refract_at_sphere(direction, met.at.point, Numbers(surface.curvature), heading, cos_incidence,
-                                    met.at.sin2_incidence, ratio);
+                                    met.at.sin2_incidence, media.ratio);
         const bool is_coated = special != nullptr && !special->coating.is_bare();
         if (reflects) {
             direction = reflect(direction, met.normal, cos_incidence);
@@ -214,17 +211,20 @@ class GhostTracer {
             } else {
                 const Numbers reflected =
                     is_coated
-                        ? coated(&CoatedPowers<Numbers>::reflected, lane_coated_reflectance, index, is_forward, met.at)
+                        ? coated(&CoatedPowers<Numbers>::reflected, lane_coated_reflectance, index, is_forward, media,
+                                 met.at)
                         : select(bent.transmitted,
-                                 fresnel_reflectance(before, after, cos_incidence, bent.cos_refraction), Numbers(1.0));
+                                 fresnel_reflectance(media.before, media.after, cos_incidence, bent.cos_refraction),
+                                 Numbers(1.0));
                 at_surfaces_ = at_surfaces_ * (open * reflected);
             }
         } else {
             going_ = going_ && bent.transmitted;
             direction = bent.direction;
-            Numbers passing = is_coated ? coated(&CoatedPowers<Numbers>::transmitted, lane_coated_transmittance<double>,
-                                                 index, is_forward, met.at)
-                                        : fresnel_transmittance(before, after, cos_incidence, bent.cos_refraction);
+            Numbers passing =
+                is_coated ? coated(&CoatedPowers<Numbers>::transmitted, lane_coated_transmittance<double>, index,
+                                   is_forward, media, met.at)
+                          : fresnel_transmittance(media.before, media.after, cos_incidence, bent.cos_refraction);
             if (special != nullptr) {
                 passing = passing * open;
             }
@@ -236,15 +236,14 @@ class GhostTracer {
     /// One of a coating's powers, of unpolarised light. `of_lane`: the same of a ray.
     template <class OfLane>
     [[nodiscard]] Numbers coated(Numbers CoatedPowers<Numbers>::*power, const OfLane& of_lane, int index,
-                                 bool is_forward, const Intersection<Numbers>& met) const {
+                                 bool is_forward, const Media<Numbers>& media, const Intersection<Numbers>& met) const {
         Numbers found(0.0);
         Mask lanes = going_;
         if (const auto& of = lens_.indices[index]; of.clear_layer_count > 0) {
             const auto look_up = [&](const double* table) { return by_wavelength(table); };
             const ClearPowers<Numbers> clear =
-                clear_coating_powers(of.clear_layer_count, clear_layer_at(lens_, of, is_forward, look_up),
-                                     by_wavelength(is_forward ? of.before : of.after),
-                                     by_wavelength(is_forward ? of.after : of.before), met.cos_incidence);
+                clear_coating_powers(of.clear_layer_count, clear_layer_at(lens_, of, is_forward, look_up), media.before,
+                                     media.after, met.cos_incidence);
             found = select(lanes && clear.holds, clear.powers.unpolarised().*power, found);
             lanes = lanes && !clear.holds;
         }

@@ -1,6 +1,7 @@
 #include "engine/optics/packet/spectral_lens.h"
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
 
 namespace lensproof::optics {
@@ -43,8 +44,6 @@ std::size_t clear_layers_of(const std::vector<TraceLens<T>>& at, std::size_t sur
     return are_clear ? count : 0;
 }
 
-enum Column { kBefore, kAfter, kForwardRatio, kReverseRatio, kColumns };
-
 }  // namespace
 
 template <class T>
@@ -52,41 +51,51 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
     if (at_.empty() || at_.size() > static_cast<std::size_t>(kMostWavelengths)) {
         throw std::invalid_argument("a spectral lens has 1 to 65536 wavelengths");
     }
-    const std::size_t count = at_.size();
-    const std::size_t surfaces = at_.front().surfaces.size();
-    absorbs_ = std::ranges::any_of(at_, [](const TraceLens<T>& lens) { return !lens.attenuation.empty(); });
-    // What absorbs lies behind the rest, so that a lens of clear glass has no wider a table.
-    const std::size_t attenuations = surfaces * kColumns * count;
-    table_.resize(attenuations + (absorbs_ ? surfaces * 2 * count : 0));
-    for (std::size_t k = 0; k < count; ++k) {
-        if (!differ_in_indices_alone(at_.front(), at_[k])) {
+    for (const TraceLens<T>& lens : at_) {
+        if (!differ_in_indices_alone(at_.front(), lens)) {
             throw std::invalid_argument("the lenses of a spectral lens differ in more than indices and coatings");
         }
-        T* entry = table_.data() + k;
-        for (const TraceSurface<T>& surface : at_[k].surfaces) {
-            entry[kBefore * count] = surface.index_before;
-            entry[kAfter * count] = surface.index_after;
-            entry[kForwardRatio * count] = surface.forward_ratio;
-            entry[kReverseRatio * count] = surface.reverse_ratio;
-            entry += kColumns * count;
-        }
-        for (std::size_t i = 0; i < surfaces && !at_[k].attenuation.empty(); ++i) {
-            T* of_surface = table_.data() + attenuations + i * 2 * count + k;
-            of_surface[0] = at_[k].attenuation[i];
-            of_surface[count] = at_[k].attenuation[i + 1];
+    }
+    const std::size_t count = at_.size();
+    const std::size_t surfaces = at_.front().surfaces.size();
+    table_.reserve(surfaces * count);
+    for (std::size_t i = 0; i < surfaces; ++i) {
+        for (const TraceLens<T>& lens : at_) {
+            const TraceSurface<T>& surface = lens.surfaces[i];
+            table_.push_back({.before = surface.index_before,
+                              .after = surface.index_after,
+                              .forward_ratio = surface.forward_ratio,
+                              .reverse_ratio = surface.reverse_ratio});
         }
     }
     for (std::size_t i = 0; i < surfaces; ++i) {
-        const T* columns = table_.data() + i * kColumns * count;
-        const T* absorbing = absorbs_ ? table_.data() + attenuations + i * 2 * count : nullptr;
-        indices_.push_back({.before = columns + kBefore * count,
-                            .after = columns + kAfter * count,
-                            .forward_ratio = columns + kForwardRatio * count,
-                            .reverse_ratio = columns + kReverseRatio * count,
-                            .attenuation_before = absorbing,
-                            .attenuation_after = absorbs_ ? absorbing + count : nullptr});
+        indices_.push_back({.at = table_.data() + i * count});
     }
+    add_attenuation();
     add_coatings();
+}
+
+template <class T>
+void SpectralLens<T>::add_attenuation() {
+    if (std::ranges::all_of(at_, [](const TraceLens<T>& lens) { return lens.attenuation.empty(); })) {
+        return;
+    }
+    const std::size_t count = at_.size();
+    attenuation_.reserve((indices_.size() + 1) * count);
+    for (std::size_t medium = 0; medium <= indices_.size(); ++medium) {
+        for (const TraceLens<T>& lens : at_) {
+            attenuation_.push_back(lens.attenuation.empty() ? T(0) : lens.attenuation[medium]);
+        }
+    }
+    const auto unless_clear = [&](std::size_t medium) {
+        const std::span<const T> of_medium(attenuation_.data() + medium * count, count);
+        const bool is_clear = std::ranges::all_of(of_medium, [](T attenuation) { return attenuation == T(0); });
+        return is_clear ? nullptr : of_medium.data();
+    };
+    for (std::size_t i = 0; i < indices_.size(); ++i) {
+        indices_[i].attenuation_before = unless_clear(i);
+        indices_[i].attenuation_after = unless_clear(i + 1);
+    }
 }
 
 template <class T>

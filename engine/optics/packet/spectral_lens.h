@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/optics/lens.h"
+#include "engine/optics/surface_indices.h"
 
 namespace lensproof::optics {
 
@@ -29,28 +30,29 @@ class SpectralLens {
 
     /// One surface's numbers, each by wavelength.
     struct Indices {
-        const T* before;
-        const T* after;
-        const T* forward_ratio;
-        const T* reverse_ratio;
-        const T* attenuation_before;
-        const T* attenuation_after;
+        const SurfaceIndices<T>* at = nullptr;
+        const T* attenuation_before = nullptr;  // null: clear at all of them
+        const T* attenuation_after = nullptr;
         /// Of its coating's layers from the scene's side, where none absorbs: of each the index, then the thickness.
         const T* clear_layers = nullptr;
         int clear_layer_count = 0;  // 0: it has no such coating
     };
     [[nodiscard]] const std::vector<Indices>& indices() const { return indices_; }
-    /// Whether a medium absorbs at one of the wavelengths.
-    [[nodiscard]] bool absorbs() const { return absorbs_; }
+    /// What they have at `at`, surface after surface.
+    [[nodiscard]] const std::vector<SurfaceIndices<T>>& table() const { return table_; }
+    /// Of each medium, from the one in front of the first surface on, by wavelength: /mm. Empty where none absorbs.
+    [[nodiscard]] const std::vector<T>& attenuation() const { return attenuation_; }
+    [[nodiscard]] bool absorbs() const { return !attenuation_.empty(); }
 
   private:
+    void add_attenuation();
     void add_coatings();
 
     std::vector<TraceLens<T>> at_;
-    std::vector<T> table_;         // [surface][which][wavelength]
-    std::vector<T> clear_layers_;  // [coating][layer][which][wavelength]
+    std::vector<SurfaceIndices<T>> table_;  // [surface][wavelength]
+    std::vector<T> attenuation_;            // [medium][wavelength]
+    std::vector<T> clear_layers_;           // [coating][layer][which][wavelength]
     std::vector<Indices> indices_;
-    bool absorbs_ = false;
 };
 
 extern template class SpectralLens<float>;

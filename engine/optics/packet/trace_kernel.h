@@ -7,9 +7,11 @@
 #include <array>
 #include <tuple>
 
+#include "engine/base/elementary.h"
 #include "engine/base/pack.h"
 #include "engine/optics/intersect.h"
 #include "engine/optics/packet/clear_layers.h"
+#include "engine/optics/packet/media.h"
 #include "engine/optics/packet/trace_kernels.h"
 #include "engine/optics/refract.h"
 #include "engine/optics/surface_shape.h"
@@ -47,19 +49,13 @@ class BlockTracer {
   private:
     using Numbers = Pack<Scalar, Abi>;
     using Mask = PackMask<Scalar, Abi>;
+    using Media = optics::Media<Numbers>;
     static constexpr int kLanes = Numbers::kLanes;
     static constexpr bool kForward = sense == Direction::forward;
 
     struct State {
         Vec3<Numbers> origin;  // z from the last vertex passed
         Vec3<Numbers> direction;
-    };
-
-    /// A surface's numbers for a packet of rays.
-    struct Media {
-        Numbers ratio;
-        Numbers before;
-        Numbers after;
     };
 
     // As numbers, since g++ 12 copies a mask in pieces of 16 bytes, for which a load of all of it has to wait.
@@ -127,11 +123,10 @@ class BlockTracer {
         if (!lens_.absorbs) {
             return at_surfaces;
         }
-        Numbers left = at_surfaces;
-        for (int lane = 0; lane < kLanes; ++lane) {
-            left.set(lane, at_surfaces[lane] * lane_fading(depth_[packet * kLanes + lane]));
-        }
-        return left;
+        const Numbers depth = Numbers::load(depth_.data() + packet * kLanes);
+        const Numbers of_thin = exponential_near_zero(-depth);
+        return at_surfaces * Numbers::by_lane(!(abs(depth) < Numbers(kNearZero<Scalar>)), of_thin,
+                                              [&](int lane) { return lane_fading(depth[lane]); });
     }
 
     static Mask is_ray(int packet, int count) {
@@ -148,16 +143,14 @@ class BlockTracer {
         }
     }
 
-    template <bool per_lane, bool with_indices = carry != Carry::geometry>
+    template <bool per_lane>
     [[nodiscard]] Media media(int surface, int packet) const {
-        const auto& of = lens_.indices[surface];
-        const auto look_up = [&](const Scalar* table) { return by_wavelength<per_lane>(table, packet); };
-        Media found{.ratio = look_up(kForward ? of.forward_ratio : of.reverse_ratio), .before = {}, .after = {}};
-        if constexpr (with_indices) {
-            found.before = look_up(kForward ? of.before : of.after);
-            found.after = look_up(kForward ? of.after : of.before);
+        const SurfaceIndices<Scalar>* of = lens_.indices[surface].at;
+        if constexpr (per_lane) {
+            return Media::of(of, kForward, rays_.wavelength + at(packet));
+        } else {
+            return Media::of(*of, kForward);
         }
-        return found;
     }
 
     /// What one surface is to every packet.
@@ -271,17 +264,16 @@ class BlockTracer {
     template <bool per_lane>
     void add_depth(const Here& here, int packet, const Numbers& distance, const Mask& lanes) {
         if constexpr (carry != Carry::geometry) {
-            if (lens_.absorbs) {
-                deepen<per_lane>(here.index, packet, distance, lanes);
+            const auto& of = lens_.indices[here.index];
+            if (const Scalar* attenuation = kForward ? of.attenuation_before : of.attenuation_after) {
+                deepen<per_lane>(attenuation, packet, distance, lanes);
             }
         }
     }
 
     /// Kept apart, so that clear glass pays for a branch alone.
     template <bool per_lane>
-    [[gnu::noinline]] void deepen(int surface, int packet, const Numbers& distance, const Mask& lanes) {
-        const auto& of = lens_.indices[surface];
-        const Scalar* table = kForward ? of.attenuation_before : of.attenuation_after;
+    [[gnu::noinline]] void deepen(const Scalar* table, int packet, const Numbers& distance, const Mask& lanes) {
         const Numbers attenuation = by_wavelength<per_lane>(table, packet);
         Scalar* depth = depth_.data() + packet * kLanes;
         const Numbers so_far = Numbers::load(depth);
@@ -369,7 +361,7 @@ class BlockTracer {
     template <bool per_lane>
     ThinBending<Numbers> bent_thin(const Here& here, int packet, const State& own, const Intersection<Numbers>& met,
                                    const Vec3<Numbers>& normal) const {
-        const Media media = this->template media<per_lane, true>(here.index, packet);
+        const Media media = this->template media<per_lane>(here.index, packet);
         const ThinMeeting<Numbers> meeting{met.point,    own.direction, normal,   met.cos_incidence,
                                            media.before, media.after,   heading()};
         const ThinElement<Scalar>& thin = lens_.specials[here.surface.special].thin;

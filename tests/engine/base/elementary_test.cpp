@@ -39,6 +39,22 @@ TEST(Elementary, ExponentialsAreWithinTwoUlp) {
     EXPECT_EQ(exponential_of_negative(-0.0F), 1.0F);
 }
 
+template <class T>
+void expect_the_same_near_zero() {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (int i = 0; i < 20000; ++i) {
+        const auto x = static_cast<T>(kNearZero<T> * unit(random) * (i % 2 == 0 ? 1.0 : 1e-3));
+        EXPECT_EQ(exponential_near_zero(x), exponential_of_negative(x)) << x;
+    }
+    EXPECT_EQ(exponential_near_zero(-kNearZero<T>), exponential_of_negative(-kNearZero<T>));
+}
+
+TEST(Elementary, ExponentialsNearZeroHaveTheSameBits) {
+    expect_the_same_near_zero<double>();
+    expect_the_same_near_zero<float>();
+}
+
 TEST(Elementary, ExponentialsEndAtTheSmallestNormalNumber) {
     EXPECT_EQ(exponential_of_negative(-1e300), 0.0);
     EXPECT_EQ(exponential_of_negative(-std::numeric_limits<double>::infinity()), 0.0);

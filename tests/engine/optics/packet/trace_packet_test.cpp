@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "engine/base/elementary.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/device/device_trace.h"
@@ -173,6 +175,30 @@ TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
         EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
         EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::clipped)], 20);
     }
+}
+
+// Of a packet's lanes some fade a little, some so much that a power of two is taken out, and some not at all.
+TEST(TracePacket, TracesGlassThatAbsorbs) {
+    std::vector<TraceLens<double>> lenses = at_three(formats::load_lens("tessar"));
+    const auto absorb_in_glass = [](TraceLens<double>& lens, double attenuation) {
+        lens.attenuation = {0.0};
+        for (const TraceSurface<double>& surface : lens.surfaces) {
+            lens.attenuation.push_back(surface.index_after > 1.1 ? attenuation : 0.0);
+        }
+    };
+    absorb_in_glass(lenses[0], 0.005);
+    absorb_in_glass(lenses[2], 0.2);
+    const auto fading_on_axis = [&](std::size_t i) {
+        const Ray<double> axis{{0.0, 0.0, -10.0}, {0.0, 0.0, 1.0}};
+        TraceLens<double> clear = lenses[i];
+        clear.attenuation.clear();
+        return trace(lenses[i], axis).transmittance / trace(clear, axis).transmittance;
+    };
+    EXPECT_GT(fading_on_axis(0), std::exp(-kNearZero<double>));
+    EXPECT_LT(fading_on_axis(2), std::exp(-kNearZero<double>));
+    const std::vector<Ray<double>> rays = rays_at(formats::load_lens("tessar"), 400, 0.4);
+    EXPECT_GT(compare<Direction::forward>(lenses, rays)[static_cast<std::size_t>(RayStatus::ok)], 20);
+    EXPECT_GT(compare<Direction::forward>({lenses[2]}, rays)[static_cast<std::size_t>(RayStatus::ok)], 20);
 }
 
 // Mangin's mirror: glass that light crosses twice, there with the other sign.
