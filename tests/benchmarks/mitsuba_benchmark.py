@@ -3,8 +3,9 @@
 LENSPROOF is the built program, SCENES the folder of cornell_box.toml and checker_wall.toml, FOLDER keeps what pip
 fetched: Mitsuba 3. The Cornell box through a pinhole, and the checkered wall through a thin lens and, by lensproof
 alone, through the exact one: the same geometry, spectra and path lengths, four wavelengths a path, one thread each, in
-turns. What a sample costs is the difference of a long run and a short one, so that starting, reading and writing count
-for neither; of Mitsuba's its first run, which compiles, counts for nothing. Medians of five.
+turns. The thin lenses have the exact one's focal length, so that all look at the same. What a sample costs is the
+difference of a long run and a short one, so that starting, reading and writing count for neither; of Mitsuba's its first
+run, which compiles, counts for nothing. Medians of five.
 
 A sample's noise is what two runs with other seeds differ by; the time to one percent of it is what users wait for.
 Mitsuba's `llvm_ad_spectral` wants a libLLVM, the newest that is found.
@@ -22,6 +23,7 @@ VARIANTS = ("scalar_spectral", "llvm_ad_spectral")
 ROUNDS = 5
 SHORT, LONG = 16, 64  # samples a pixel; squares, as Mitsuba's sampler wants them
 COLUMNS = 192
+FOCAL_LENGTH_MM = 100.4  # of the double Gauss
 
 
 # --- lensproof ---
@@ -90,7 +92,7 @@ def wall_scene(mi, scene):
     half = [chart["square_mm"] * squares / 2 for squares in chart["squares"]]
     nm, ramp = (400.0, 700.0), 1e-3
     band = cornell.irregular([(nm[0], 0.0), (nm[0] + ramp, 1.0), (nm[1] - ramp, 1.0), (nm[1], 0.0)])
-    focal = 50.0
+    focal = camera["focal_length_mm"]
     return {"type": "scene", "integrator": {"type": "path", "max_depth": scene["render"]["max_bounces"] + 1},
             "sensor": {"type": "thinlens", "fov_axis": "x",
                        "fov": math.degrees(2 * math.atan(width / 2 * (1 / focal - 1 / camera["focus_distance_mm"]))),
@@ -208,7 +210,7 @@ def main():
         box, _ = scene_file(scenes, pathlib.Path(scratch), "cornell_box", [])
         wall, _ = scene_file(scenes, pathlib.Path(scratch), "checker_wall", [])
         thin, _ = scene_file(scenes, pathlib.Path(scratch), "checker_wall", [
-            ('lens = "double-gauss-lowenthal"', 'model = "thin-lens"\nfocal_length_mm = 50.0')])
+            ('lens = "double-gauss-lowenthal"', f'model = "thin-lens"\nfocal_length_mm = {FOCAL_LENGTH_MM}')])
         for scene, ours in (("Cornell box", {"lensproof, pinhole": box}),
                             ("checkered wall", {"lensproof, thin lens": thin, "lensproof, exact lens": wall})):
             cameras = {name: Lensproof(program, file) for name, file in ours.items()}
