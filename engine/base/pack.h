@@ -113,6 +113,8 @@ class Pack {
     friend Pack whole(const Pack& a) { return Pack(std::experimental::trunc(a.lanes_)); }
     friend Pack abs(const Pack& a) { return Pack(std::experimental::abs(a.lanes_)); }
     friend Pack sqrt(const Pack& a) { return Pack(std::experimental::sqrt(a.lanes_)); }
+    /// Of all lanes.
+    friend Scalar least(const Pack& a) { return std::experimental::hmin(a.lanes_); }
 
     /// Lane by lane, `a` where `mask` holds, else `b`.
     friend Pack select(const Mask& mask, const Pack& a, const Pack& b) {

@@ -21,14 +21,14 @@ struct Facet {
         return sides.first + a * sides.to_second + b * sides.to_third;
     }
     [[nodiscard]] Vec2d uv_at(double a, double b) const { return uv + a * uv_along_a + b * uv_along_b; }
-    /// A hit without a distance, material, object and primitive, shaded flat.
-    [[nodiscard]] SurfaceHit hit(double a, double b) const {
-        return {.point = point(a, b),
-                .geometric_normal = normal,
-                .shading_normal = normal,
-                .tangent = tangent,
-                .uv = uv_at(a, b),
-                .error_mm = error_mm};
+    /// Puts into `hit` what belongs to a point, shaded flat: all but its distance, material, object and primitive.
+    void describe(double a, double b, SurfaceHit& hit) const {
+        hit.point = point(a, b);
+        hit.geometric_normal = normal;
+        hit.shading_normal = normal;
+        hit.tangent = tangent;
+        hit.uv = uv_at(a, b);
+        hit.error_mm = error_mm;
     }
 };
 

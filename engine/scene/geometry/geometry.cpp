@@ -79,61 +79,42 @@ RTCRay start(Query& query) {
 }
 
 /// Goes on from what is met already with what Embree knows of.
-void ask_embree(Query& query) {
+void ask_embree(const SceneGeometry::Data& data, const Stretch<double>& stretch, Nearest& nearest) {
+    Query query{.data = &data, .ray = stretch, .nearest = nearest};
     RTCRayHit ray{.ray = start(query)};
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    embree::intersect(query.data->scene.get(), query.context, ray);
+    embree::intersect(data.scene.get(), query.context, ray);
+    nearest = query.nearest;
 }
 
-bool embree_finds_any(Query& query) {
-    query.is_occlusion = true;
+bool embree_finds_any(const SceneGeometry::Data& data, const Stretch<double>& stretch) {
+    Query query{.data = &data, .ray = stretch, .is_occlusion = true};
     RTCRay ray = start(query);
-    embree::occluded(query.data->scene.get(), query.context, ray);
+    embree::occluded(data.scene.get(), query.context, ray);
     return ray.tfar < 0.0F;
 }
 
-/// The first of a scene's few triangles.
-TriangleMeeting first_triangle(const SceneGeometry::Data& data, const Stretch<double>& ray) {
-    return analytic_kernels().meet_first_triangle(data.triangles, ray,
-                                                  largest_coordinate(ray.origin) + data.mesh_reach_mm);
-}
-
-/// Goes on with what is met of those; what lies in the seam around a triangle is taken to its edge.
-void meet_few_triangles(Query& query) {
-    if (const auto [meeting, triangle] = first_triangle(*query.data, query.ray); triangle >= 0) {
-        const MeshTriangle& met = query.data->triangle_of[static_cast<std::size_t>(triangle)];
-        const double b1 = std::max(meeting.b1, 0.0);
-        const double b2 = std::max(meeting.b2, 0.0);
+/// Of the few triangles: what lies in the seam around one is taken to its edge.
+void offer_triangle(Nearest& nearest, const SceneGeometry::Data& data, const FirstMeeting& first) {
+    if (first.is_one()) {
+        const MeshTriangle& of = data.triangle_of[static_cast<std::size_t>(first.which)];
+        const double b1 = std::max(first.meeting.b1, 0.0);
+        const double b2 = std::max(first.meeting.b2, 0.0);
         const double sum = std::max(b1 + b2, 1.0);
-        query.nearest.offer({.at = meeting.at, .b1 = b1 / sum, .b2 = b2 / sum}, met.object, met.primitive);
+        nearest.offer({.at = first.meeting.at, .b1 = b1 / sum, .b2 = b2 / sum}, of.object, of.primitive);
     }
 }
 
-/// Goes on from the spheres and quads that are tested one by one.
-void meet_rest(Query& query) {
-    if (!query.data->triangles.empty()) {
-        meet_few_triangles(query);
-    }
-    if (query.data->has_embree_geometry) {
-        ask_embree(query);
-    }
-}
-
-bool rest_is_met(Query& query) {
-    return (!query.data->triangles.empty() && first_triangle(*query.data, query.ray).triangle >= 0) ||
-           (query.data->has_embree_geometry && embree_finds_any(query));
-}
-
-SurfaceHit hit_at(const SceneGeometry::Data& data, const Stretch<double>& ray, const Nearest& nearest) {
+/// Fills `hit` in its place: copies of it would wait for what was just written.
+void describe(const SceneGeometry::Data& data, const Stretch<double>& ray, const Nearest& nearest, SurfaceHit& hit) {
     const PlacedObject& met = data.objects[nearest.object];
     const Meeting<double>& at = nearest.meeting;
-    SurfaceHit hit;
     if (const auto* quad = std::get_if<Quad>(met.shape)) {
-        hit = met.facets.front().hit(std::clamp(at.b1 / quad->width_mm + 0.5, 0.0, 1.0),
-                                     std::clamp(at.b2 / quad->height_mm + 0.5, 0.0, 1.0));
+        met.facets.front().describe(std::clamp(at.b1 / quad->width_mm + 0.5, 0.0, 1.0),
+                                    std::clamp(at.b2 / quad->height_mm + 0.5, 0.0, 1.0), hit);
     } else if (!met.facets.empty()) {
-        hit = met.facets[nearest.primitive].hit(at.b1, at.b2);
+        met.facets[nearest.primitive].describe(at.b1, at.b2, hit);
     } else if (const auto* mesh = std::get_if<TriangleMesh>(met.shape)) {
         hit = world_hit(met.place, shape_point(*mesh, nearest.primitive, at.b1, at.b2));
     } else {
@@ -144,7 +125,6 @@ SurfaceHit hit_at(const SceneGeometry::Data& data, const Stretch<double>& ray, c
     hit.material = met.object.material;
     hit.object = nearest.object;
     hit.primitive = nearest.primitive;
-    return hit;
 }
 
 /// What of two points is asked for: from one end whatever the order, so that both orders agree to the last bit.
@@ -160,20 +140,25 @@ Stretch<double> stretch_between(const SceneGeometry& scene, const Vec3d& from, c
             .to = distance - margin};
 }
 
-/// Calls visit(i, columns, j) for each of `count` rays, which `ray_of(i)` says, the j-th of its columns, once those of
-/// the spheres and quads which are tested one by one are met.
+/// What many rays meet before Embree is asked.
+struct Columns {
+    RayColumns rays;
+    MeetingColumns objects;  // of the spheres and quads that are tested one by one
+    MeetingColumns triangles;
+};
+
+/// Calls visit(i, columns, j) for each of `count` rays, which `ray_of(i)` says, the j-th of its columns.
 template <class RayOf, class Visit>
 void meet_in_columns(const SceneGeometry::Data& data, std::size_t count, const RayOf& ray_of, const Visit& visit) {
-    RayColumns columns;
+    Columns columns;
     for (std::size_t first = 0; first < count; first += RayColumns::kMost) {
-        columns.size = std::min(RayColumns::kMost, count - first);
-        for (std::size_t j = 0; j < columns.size; ++j) {
-            columns.set(j, ray_of(first + j));
+        columns.rays.size = std::min(RayColumns::kMost, count - first);
+        for (std::size_t j = 0; j < columns.rays.size; ++j) {
+            columns.rays.set(j, ray_of(first + j));
         }
-        if (data.tests_analytic_one_by_one) {
-            analytic_kernels().meet_nearest(data.analytic, columns);
-        }
-        for (std::size_t j = 0; j < columns.size; ++j) {
+        analytic_kernels().meet_objects(data.one_by_one(), columns.rays, columns.objects);
+        analytic_kernels().meet_triangles(data.triangles, columns.rays, columns.triangles);
+        for (std::size_t j = 0; j < columns.rays.size; ++j) {
             visit(first + j, columns, j);
         }
     }
@@ -264,16 +249,22 @@ std::optional<SurfaceHit> intersect(const SceneGeometry& scene, const Vec3d& ori
         return std::nullopt;
     }
     const SceneGeometry::Data& data = scene.data();
-    Query query{.data = &data, .ray = {origin, direction, from_mm, to_mm}};
-    if (data.tests_analytic_one_by_one) {
-        for (const AnalyticObject& object : data.analytic) {
-            if (const auto [is_met, meeting] = meet(object, query.ray); is_met) {
-                query.nearest.offer(meeting, object.object, 0);
-            }
+    const Stretch<double> ray{origin, direction, from_mm, to_mm};
+    Nearest nearest;
+    for (const AnalyticObject& object : data.one_by_one()) {
+        if (const auto [is_met, meeting] = meet(object, ray); is_met) {
+            nearest.offer(meeting, object.object, 0);
         }
     }
-    meet_rest(query);
-    return query.nearest.is_one() ? std::optional(hit_at(data, query.ray, query.nearest)) : std::nullopt;
+    offer_triangle(nearest, data, analytic_kernels().meet_first_triangle(data.triangles, ray));
+    if (data.has_embree_geometry) {
+        ask_embree(data, ray, nearest);
+    }
+    std::optional<SurfaceHit> hit;
+    if (nearest.is_one()) {
+        describe(data, ray, nearest, hit.emplace());
+    }
+    return hit;
 }
 
 void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
@@ -282,32 +273,35 @@ void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
     const auto stretch = [&](std::size_t i) -> Stretch<double> {
         return {.origin = rays[i].origin, .direction = rays[i].direction, .to = kInfinity};
     };
-    meet_in_columns(data, rays.size(), stretch, [&](std::size_t i, const RayColumns& columns, std::size_t j) {
+    meet_in_columns(data, rays.size(), stretch, [&](std::size_t i, const Columns& columns, std::size_t j) {
         hits[i].reset();
         if (!is_usable(rays[i].origin, rays[i].direction)) {
             return;
         }
-        Query query{.data = &data, .ray = stretch(i)};
-        if (columns.object[j] >= 0.0) {
-            query.nearest = {columns.meeting(j), data.analytic[static_cast<std::size_t>(columns.object[j])].object};
+        Nearest nearest;
+        if (const auto [meeting, which] = columns.objects.first(j); which >= 0) {
+            nearest = {meeting, data.analytic[static_cast<std::size_t>(which)].object};
         }
-        meet_rest(query);
-        if (query.nearest.is_one()) {
-            hits[i] = hit_at(data, query.ray, query.nearest);
+        offer_triangle(nearest, data, columns.triangles.first(j));
+        if (data.has_embree_geometry) {
+            ask_embree(data, stretch(i), nearest);
+        }
+        if (nearest.is_one()) {
+            describe(data, stretch(i), nearest, hits[i].emplace());
         }
     });
 }
 
 bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to) {
     const SceneGeometry::Data& data = scene.data();
-    Query query{.data = &data, .ray = stretch_between(scene, from, to)};
-    if (!is_usable(query.ray.origin, query.ray.direction)) {
+    const Stretch<double> ray = stretch_between(scene, from, to);
+    if (!is_usable(ray.origin, ray.direction)) {
         return false;
     }
-    return (data.tests_analytic_one_by_one &&
-            std::ranges::any_of(data.analytic,
-                                [&](const AnalyticObject& object) { return meet(object, query.ray).is_met; })) ||
-           rest_is_met(query);
+    return std::ranges::any_of(data.one_by_one(),
+                               [&](const AnalyticObject& object) { return meet(object, ray).is_met; }) ||
+           analytic_kernels().meet_first_triangle(data.triangles, ray).is_one() ||
+           (data.has_embree_geometry && embree_finds_any(data, ray));
 }
 
 void find_occluded(const SceneGeometry& scene, std::span<const Segment> segments,
@@ -317,10 +311,11 @@ void find_occluded(const SceneGeometry& scene, std::span<const Segment> segments
     const auto stretch = [&](std::size_t i) {
         return stretches[i % stretches.size()] = stretch_between(scene, segments[i].from, segments[i].to);
     };
-    meet_in_columns(data, segments.size(), stretch, [&](std::size_t i, const RayColumns& columns, std::size_t j) {
-        Query query{.data = &data, .ray = stretches[i % stretches.size()]};
-        const bool is_blocked =
-            is_usable(query.ray.origin, query.ray.direction) && (columns.object[j] >= 0.0 || rest_is_met(query));
+    meet_in_columns(data, segments.size(), stretch, [&](std::size_t i, const Columns& columns, std::size_t j) {
+        const Stretch<double>& ray = stretches[i % stretches.size()];
+        const bool is_blocked = is_usable(ray.origin, ray.direction) &&
+                                (columns.objects.first(j).is_one() || columns.triangles.first(j).is_one() ||
+                                 (data.has_embree_geometry && embree_finds_any(data, ray)));
         are_occluded[i] = is_blocked ? 1 : 0;
     });
 }

@@ -248,36 +248,11 @@ AnalyticObject analytic_object(const PlacedObject& placed, std::uint32_t index) 
     return made;
 }
 
-/// The affine function of a point that is `gradient` · (point − zero).
-void set_function(TriangleBlock::Function& function, std::size_t lane, const Vec3d& gradient, const Vec3d& zero) {
-    function.x[lane] = gradient.x;
-    function.y[lane] = gradient.y;
-    function.z[lane] = gradient.z;
-    function.at_origin[lane] = -dot(gradient, zero);
-}
-
-void add_triangle(SceneGeometry::Data& data, const TriangleSides& sides, const MeshTriangle& triangle) {
-    const std::size_t lane = data.triangle_of.size() % TriangleBlock::kLanes;
-    if (lane == 0) {
-        data.triangles.emplace_back();
-    }
-    data.triangle_of.push_back(triangle);
-    TriangleBlock& block = data.triangles.back();
-    const Vec3d area = cross(sides.to_second, sides.to_third);
-    const double per_area2 = 1.0 / dot(area, area);
-    const Vec3d b1 = per_area2 * cross(sides.to_third, area);
-    const Vec3d b2 = per_area2 * cross(area, sides.to_second);
-    set_function(block.height, lane, std::sqrt(per_area2) * area, sides.first);
-    set_function(block.b1, lane, b1, sides.first);
-    set_function(block.b2, lane, b2, sides.first);
-    block.b1_slope[lane] = length(b1);
-    block.b2_slope[lane] = length(b2);
-}
-
 /// A mesh that is instanced is in coordinates of its own, and Embree's.
 void gather_few_triangles(SceneGeometry::Data& data) {
-    constexpr std::size_t kFewTriangles = 48;  // in 73 ns by AVX-512, 101 by AVX2; Embree takes some 120
+    constexpr std::size_t kFewTriangles = 48;  // of one ray in some 70 ns by AVX-512, 100 by AVX2; Embree takes 120
     std::size_t count = 0;
+    data.triangles.reach_mm = data.mesh_reach_mm;
     for (const PlacedObject& placed : data.objects) {
         if (const auto* mesh = std::get_if<TriangleMesh>(placed.shape)) {
             count += data.uses[placed.object.shape] == 1 ? mesh->triangles.size() : kFewTriangles + 1;
@@ -286,7 +261,8 @@ void gather_few_triangles(SceneGeometry::Data& data) {
     for (std::uint32_t i = 0; count <= kFewTriangles && i < data.objects.size(); ++i) {
         if (const auto* mesh = std::get_if<TriangleMesh>(data.objects[i].shape)) {
             for (std::uint32_t k = 0; k < mesh->triangles.size(); ++k) {
-                add_triangle(data, sides(*mesh, k), {i, k});
+                data.triangles.add(sides(*mesh, k));
+                data.triangle_of.push_back({i, k});
             }
         }
     }
@@ -300,7 +276,7 @@ void build(SceneGeometry::Data& data) {
     data.scene = new_scene(data);
     data.instanced.resize(data.shapes.size());
     gather_few_triangles(data);
-    const bool are_few = !data.triangles.empty();
+    const bool are_few = !data.triangles.is_empty();
     for (std::uint32_t i = 0; i < data.objects.size(); ++i) {
         const PlacedObject& placed = data.objects[i];
         if (!std::holds_alternative<TriangleMesh>(*placed.shape)) {

@@ -40,8 +40,8 @@ struct SceneGeometry::Data {
     std::vector<AnalyticObject> analytic;    // the spheres and quads among them, the primitives of one Embree geometry
     bool tests_analytic_one_by_one = false;  // a handful is sooner tested so than found by Embree
     /// Those of all meshes, where they are so few that each ray is tested against each; then Embree knows of none.
-    std::vector<TriangleBlock> triangles;
-    std::vector<MeshTriangle> triangle_of;  // by its place in these
+    FewTriangles triangles;
+    std::vector<MeshTriangle> triangle_of;  // by its place among these
     bool has_embree_geometry = false;
     std::vector<std::string> remarks;
     Box bounds;
@@ -50,6 +50,10 @@ struct SceneGeometry::Data {
     std::vector<embree::Scene> instanced;  // of a shape that is instanced, by the shape's index
     embree::Scene scene;
 
+    /// What Embree does not know of, but for the triangles.
+    [[nodiscard]] std::span<const AnalyticObject> one_by_one() const {
+        return tests_analytic_one_by_one ? std::span(analytic) : std::span<const AnalyticObject>();
+    }
     [[nodiscard]] const TriangleMesh& mesh(std::uint32_t object) const {
         return std::get<TriangleMesh>(*objects[object].shape);
     }

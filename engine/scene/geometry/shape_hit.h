@@ -6,16 +6,10 @@
 #include "engine/base/affine.h"
 #include "engine/scene/geometry/geometry.h"
 #include "engine/scene/geometry/packet/analytic_meeting.h"
+#include "engine/scene/geometry/packet/few_triangles.h"
 #include "engine/scene/geometry/shapes.h"
 
 namespace lensproof::scene {
-
-/// A triangle's first vertex, and the ways from there to the others.
-struct TriangleSides {
-    Vec3d first;
-    Vec3d to_second;
-    Vec3d to_third;
-};
 
 /// The triangle that Embree's float ray has met at barycentric coordinates (float_b1, float_b2).
 ///

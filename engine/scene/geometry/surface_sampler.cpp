@@ -24,6 +24,19 @@ double area_stretch(const Matrix3& linear, const Vec3d& world_normal) {
     return std::abs(determinant(linear)) / length(transposed_times(linear, world_normal));
 }
 
+/// The first of rising numbers that is larger; a few are counted, since no branch of a search can be foreseen.
+std::vector<double>::const_iterator first_beyond(const std::vector<double>& rising, double number) {
+    constexpr std::size_t kFew = 16;
+    if (rising.size() > kFew) {
+        return std::ranges::upper_bound(rising, number);
+    }
+    std::ptrdiff_t not_beyond = 0;
+    for (const double one : rising) {
+        not_beyond += one <= number ? 1 : 0;
+    }
+    return rising.begin() + not_beyond;
+}
+
 Vec3d sphere_direction(double u1, double u2) {
     const double z = 1.0 - 2.0 * u1;
     const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
@@ -58,7 +71,7 @@ SurfaceSample SurfaceSampler::sample(double u1, double u2) const {
         return drawn(placed.facets.front(), u1, u2);
     }
     const double sought = u1 * area_mm2_;
-    const auto chosen = std::min(std::ranges::upper_bound(areas_to_mm2_, sought), areas_to_mm2_.end() - 1);
+    const auto chosen = std::min(first_beyond(areas_to_mm2_, sought), areas_to_mm2_.end() - 1);
     const double before = chosen == areas_to_mm2_.begin() ? 0.0 : *(chosen - 1);
     const double root = std::sqrt(std::clamp((sought - before) / (*chosen - before), 0.0, 1.0));
     const auto triangle = static_cast<std::uint32_t>(chosen - areas_to_mm2_.begin());

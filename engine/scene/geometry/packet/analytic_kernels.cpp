@@ -11,7 +11,6 @@ void RayColumns::set(std::size_t i, const Stretch<double>& ray) {
     direction_z[i] = ray.direction.z;
     from[i] = ray.from;
     to[i] = ray.to;
-    object[i] = -1.0;
 }
 
 const AnalyticKernels& analytic_kernels(std::optional<SimdLevel> level) {

@@ -7,6 +7,7 @@
 
 #include "engine/base/simd_level.h"
 #include "engine/scene/geometry/packet/analytic_meeting.h"
+#include "engine/scene/geometry/packet/few_triangles.h"
 
 namespace lensproof::scene {
 
@@ -17,30 +18,38 @@ struct alignas(64) RayColumns {
 
     Column origin_x, origin_y, origin_z;
     Column direction_x, direction_y, direction_z;
-    Column from;
-    Column to;      // the end of the stretch; then the nearest meeting, if there is one
-    Column object;  // which of the objects was met; −1: none
-    Column b1, b2;  // as Meeting has them
+    Column from, to;  // the stretch that is asked for
     std::size_t size = 0;
 
-    /// The i-th ray; it has met nothing.
+    /// The i-th ray.
     void set(std::size_t i, const Stretch<double>& ray);
-    [[nodiscard]] Meeting<double> meeting(std::size_t i) const { return {.at = to[i], .b1 = b1[i], .b2 = b2[i]}; }
 };
 
-/// The first of many triangles on a ray; −1: none.
-struct TriangleMeeting {
+/// The first of a list on a ray.
+struct FirstMeeting {
     Meeting<double> meeting;
-    int triangle = -1;
+    int which = -1;  // an index; −1: none
+
+    [[nodiscard]] bool is_one() const { return which >= 0; }
 };
 
-/// The loops of one level; all levels yield the same bits.
+/// The same of many rays.
+struct alignas(64) MeetingColumns {
+    RayColumns::Column at, b1, b2, which;
+
+    [[nodiscard]] FirstMeeting first(std::size_t i) const {
+        return {.meeting = {.at = at[i], .b1 = b1[i], .b2 = b2[i]}, .which = static_cast<int>(which[i])};
+    }
+};
+
+/// The loops of one level; all levels yield the same bits. Of two that are equally far, the one before counts.
 struct AnalyticKernels {
-    /// Which of the objects each ray meets first; of two that are equally far, the one before.
-    void (*meet_nearest)(std::span<const AnalyticObject> objects, RayColumns& rays);
-    /// Which of the triangles one ray meets first, as above. `reach_mm`: of the ray's origin and the triangles.
-    TriangleMeeting (*meet_first_triangle)(std::span<const TriangleBlock> blocks, const Stretch<double>& ray,
-                                           double reach_mm);
+    /// Which of the objects each ray meets first.
+    void (*meet_objects)(std::span<const AnalyticObject> objects, const RayColumns& rays, MeetingColumns& met);
+    /// Which of the triangles.
+    void (*meet_triangles)(const FewTriangles& triangles, const RayColumns& rays, MeetingColumns& met);
+    /// The same of one ray.
+    FirstMeeting (*meet_first_triangle)(const FewTriangles& triangles, const Stretch<double>& ray);
 };
 
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.

@@ -1,6 +1,5 @@
 // engine/scene/geometry/packet/analytic_meeting.h — spheres and quads met by a ray, or by several in step.
 #pragma once
-#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -109,50 +108,6 @@ template <class T>
 Crossing<T> meet(const AnalyticObject& object, const Stretch<T>& ray) {
     return object.radius_mm > 0.0 ? meet_sphere(object.radius_mm, object.to_local, ray)
                                   : meet_quad(object.half_mm, object.to_local, ray);
-}
-
-/// Triangles side by side, each by the affine functions of a point in the world that are its height over the plane, mm,
-/// and its barycentric coordinates of the second and third vertex (Baldwin and Weber, "Fast ray-triangle intersections
-/// by coordinate transformation", JCGT 5, 2016). A lane of zeros is met by nothing.
-struct alignas(64) TriangleBlock {
-    static constexpr std::size_t kLanes = 8;
-    using Column = std::array<double, kLanes>;
-    struct Function {
-        Column x, y, z, at_origin;
-    };
-    Function height;
-    Function b1;
-    Function b2;
-    Column b1_slope, b2_slope;  // lengths of the gradients, per mm
-};
-
-/// A function of a block at kLanes of its triangles, from `lane` on.
-template <class T>
-struct LaneFunction {
-    Vec3<T> gradient;
-    T at_origin;
-
-    [[nodiscard]] T along(const Vec3<T>& direction) const { return dot(gradient, direction); }
-    [[nodiscard]] T at(const Vec3<T>& point) const { return dot(gradient, point) + at_origin; }
-};
-
-/// Triangles grown by more than rounding does to the coordinates of a meeting, 16 roundings of `reach_mm`, which is
-/// that of the ray's origin and theirs: a ray at the edge of two, or at a vertex of many, so meets one of them. (Of a
-/// million aimed to the last bit hundreds are lost with half a rounding, none with four.) `ray_origin` moves rays
-/// farther off the surface that they leave than its neighbours are grown.
-template <class T>
-Crossing<T> meet_triangles(const LaneFunction<T>& height, const LaneFunction<T>& first, const LaneFunction<T>& second,
-                           const T& first_slope, const T& second_slope, double reach_mm, const Stretch<T>& ray) {
-    const T at = -height.at(ray.origin) / height.along(ray.direction);
-    const Vec3<T> point = ray.origin + at * ray.direction;
-    const T b1 = first.at(point);
-    const T b2 = second.at(point);
-    const T seam(16.0 * 0x1p-53 * reach_mm);
-    const T seam1 = seam * first_slope;
-    const T seam2 = seam * second_slope;
-    return {
-        .is_met = at > ray.from && at < ray.to && b1 >= -seam1 && b2 >= -seam2 && b1 + b2 <= T(1.0) + (seam1 + seam2),
-        .meeting = {.at = at, .b1 = b1, .b2 = b2}};
 }
 
 }  // namespace lensproof::scene

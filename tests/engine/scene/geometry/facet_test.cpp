@@ -26,6 +26,12 @@ void expect_same(const SurfaceHit& ahead, const SurfaceHit& found) {
     EXPECT_NEAR(ahead.uv.y, found.uv.y, 1e-14);
 }
 
+SurfaceHit hit_of(const Facet& facet, double a, double b) {
+    SurfaceHit hit;
+    facet.describe(a, b, hit);
+    return hit;
+}
+
 TEST(Facet, IsWhatItsShapeSaysOfEachPoint) {
     const SceneGeometry scene({Quad{4.0, 2.0}, box_mesh(1.5F)},
                               {{.shape = 0, .to_world = kMap}, {.shape = 1, .to_world = kMap}});
@@ -36,10 +42,10 @@ TEST(Facet, IsWhatItsShapeSaysOfEachPoint) {
     for (const double a : {0.0, 0.25, 0.7, 1.0}) {
         for (const double b : {0.0, 0.1, 0.3}) {
             expect_same(
-                objects[0].facets.front().hit(a, b),
+                hit_of(objects[0].facets.front(), a, b),
                 world_hit(objects[0].place, shape_point(quad, (a - 0.5) * quad.width_mm, (b - 0.5) * quad.height_mm)));
             for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-                expect_same(objects[1].facets[i].hit(a * (1.0 - b), b),
+                expect_same(hit_of(objects[1].facets[i], a * (1.0 - b), b),
                             world_hit(objects[1].place, shape_point(mesh, i, a * (1.0 - b), b)));
             }
         }

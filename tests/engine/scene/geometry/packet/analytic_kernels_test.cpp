@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "tests/engine/scene/scene_shapes.h"
@@ -32,25 +33,45 @@ std::vector<AnalyticObject> some_objects(std::mt19937_64& random) {
     return objects;
 }
 
-/// What the scalar meetings say, one object after the other.
-RayColumns one_by_one(const std::vector<AnalyticObject>& objects, const RayColumns& given) {
-    RayColumns rays = given;
-    for (std::size_t i = 0; i < rays.size; ++i) {
-        for (std::size_t k = 0; k < objects.size(); ++k) {
-            const auto [is_met, meeting] =
-                meet(objects[k], Stretch<double>{{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
-                                                 {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
-                                                 rays.from[i],
-                                                 rays.to[i]});
-            if (is_met) {
-                rays.object[i] = static_cast<double>(k);
-                rays.to[i] = meeting.at;
-                rays.b1[i] = meeting.b1;
-                rays.b2[i] = meeting.b2;
-            }
-        }
+RayColumns some_rays(std::mt19937_64& random, std::size_t size) {
+    RayColumns rays;
+    rays.size = size;
+    for (std::size_t i = 0; i < size; ++i) {
+        rays.set(i, {.origin = {uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
+                     .direction = random_direction(random),
+                     .from = uniform(random, 0, 2),
+                     .to = i % 3 == 0 ? 8.0 : 1e30});
     }
     return rays;
+}
+
+Stretch<double> ray_of(const RayColumns& rays, std::size_t i) {
+    return {.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
+            .direction = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
+            .from = rays.from[i],
+            .to = rays.to[i]};
+}
+
+/// The first of `count`, one after the other, by the scalar meeting `meet_one(index, ray)`.
+template <class MeetOne>
+FirstMeeting first_of(std::size_t count, Stretch<double> ray, const MeetOne& meet_one) {
+    FirstMeeting first;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (const auto [is_met, meeting] = meet_one(i, ray); is_met) {
+            ray.to = meeting.at;
+            first = {.meeting = meeting, .which = static_cast<int>(i)};
+        }
+    }
+    return first;
+}
+
+void expect_same(const FirstMeeting& found, const FirstMeeting& expected, SimdLevel level) {
+    ASSERT_EQ(found.which, expected.which) << simd_name(level);
+    if (expected.is_one()) {
+        ASSERT_EQ(found.meeting.at, expected.meeting.at) << simd_name(level);
+        ASSERT_EQ(found.meeting.b1, expected.meeting.b1) << simd_name(level);
+        ASSERT_EQ(found.meeting.b2, expected.meeting.b2) << simd_name(level);
+    }
 }
 
 // Each lane is computed as a single ray is, so every width of packets has its bits; whatever the number of rays, and
@@ -58,34 +79,18 @@ RayColumns one_by_one(const std::vector<AnalyticObject>& objects, const RayColum
 TEST(AnalyticKernels, EveryLevelMeetsWhatSingleRaysDo) {
     std::mt19937_64 random(1);
     const std::vector<AnalyticObject> objects = some_objects(random);
+    const auto meet_one = [&](std::size_t i, const Stretch<double>& ray) { return meet(objects[i], ray); };
     std::vector<int> met_by_kind(2);
-    for (int round = 0; round < 400; ++round) {
-        RayColumns rays;
-        rays.size = 1 + static_cast<std::size_t>(round) % RayColumns::kMost;
-        for (std::size_t i = 0; i < rays.size; ++i) {
-            rays.set(i, {.origin = {uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
-                         .direction = random_direction(random),
-                         .from = uniform(random, 0, 2),
-                         .to = i % 3 == 0 ? 8.0 : 1e30});
-        }
-        const RayColumns expected = one_by_one(objects, rays);
-        for (std::size_t i = 0; i < rays.size; ++i) {
-            if (expected.object[i] >= 0.0) {
-                ++met_by_kind[static_cast<std::size_t>(expected.object[i]) % 2];
-            }
-        }
+    for (std::size_t round = 0; round < 400; ++round) {
+        const RayColumns rays = some_rays(random, 1 + round % RayColumns::kMost);
         for (const SimdLevel level : available_simd_levels()) {
-            RayColumns found = rays;
-            analytic_kernels(level).meet_nearest(objects, found);
+            MeetingColumns found;
+            analytic_kernels(level).meet_objects(objects, rays, found);
             for (std::size_t i = 0; i < rays.size; ++i) {
-                ASSERT_EQ(found.object[i], expected.object[i]) << simd_name(level);
-                if (found.object[i] < 0.0) {
-                    continue;
-                }
-                ASSERT_LT(found.object[i], 12.0);
-                ASSERT_EQ(found.to[i], expected.to[i]) << simd_name(level);
-                ASSERT_EQ(found.b1[i], expected.b1[i]) << simd_name(level);
-                ASSERT_EQ(found.b2[i], expected.b2[i]) << simd_name(level);
+                const FirstMeeting expected = first_of(objects.size(), ray_of(rays, i), meet_one);
+                expect_same(found.first(i), expected, level);
+                ASSERT_LT(expected.which, 12);
+                met_by_kind[static_cast<std::size_t>(expected.which + 2) % 2] += expected.is_one() ? 1 : 0;
             }
         }
     }
@@ -93,66 +98,77 @@ TEST(AnalyticKernels, EveryLevelMeetsWhatSingleRaysDo) {
     EXPECT_GT(met_by_kind[1], 200);
 }
 
-/// What the scalar functions say of one triangle after the other.
-TriangleMeeting one_by_one(const std::vector<TriangleBlock>& blocks, const Stretch<double>& ray, double reach_mm) {
-    const auto function = [](const TriangleBlock::Function& f, std::size_t lane) {
-        return LaneFunction<double>{{f.x[lane], f.y[lane], f.z[lane]}, f.at_origin[lane]};
+/// Single ones and pairs in a plane, twice the same.
+FewTriangles some_triangles(std::mt19937_64& random) {
+    FewTriangles few{.reach_mm = 20.0};
+    const auto grid_point = [&] {  // that floats are exact at
+        const auto coordinate = [&] { return static_cast<double>(static_cast<int>(random() % 17) - 8); };
+        return Vec3d{coordinate(), coordinate(), coordinate()};
     };
-    TriangleMeeting first;
-    Stretch<double> rest = ray;
-    for (std::size_t i = 0; i < blocks.size() * TriangleBlock::kLanes; ++i) {
-        const TriangleBlock& block = blocks[i / TriangleBlock::kLanes];
-        const std::size_t lane = i % TriangleBlock::kLanes;
-        const auto [is_met, meeting] =
-            meet_triangles(function(block.height, lane), function(block.b1, lane), function(block.b2, lane),
-                           block.b1_slope[lane], block.b2_slope[lane], reach_mm, rest);
-        if (is_met) {
-            rest.to = meeting.at;
-            first = {.meeting = meeting, .triangle = static_cast<int>(i)};
+    std::vector<TriangleSides> sides;
+    while (sides.size() < 15) {
+        const Vec3d a = grid_point();
+        const Vec3d along = 0.5 * grid_point();
+        const Vec3d across = 0.5 * grid_point();
+        if (length(cross(along, across)) < 1.0) {
+            continue;
+        }
+        sides.push_back({a, along, across});
+        if (sides.size() % 3 == 0) {
+            sides.push_back({a + along, across - along, across});
         }
     }
-    return first;
+    for (int time = 0; time < 2; ++time) {
+        for (const TriangleSides& triangle : sides) {
+            few.add(triangle);
+        }
+    }
+    return few;
 }
 
-// Of triangles, too, some of which stand there twice; lanes of zeros are met by nothing.
+// Of triangles, too, for many rays and for one; a block's lanes of zeros are met by nothing.
 TEST(AnalyticKernels, EveryLevelMeetsTheFirstTriangle) {
     std::mt19937_64 random(2);
-    std::vector<TriangleBlock> blocks(4);
-    const auto set = [](TriangleBlock::Function& function, std::size_t lane, const Vec3d& gradient, double at_origin) {
-        function.x[lane] = gradient.x;
-        function.y[lane] = gradient.y;
-        function.z[lane] = gradient.z;
-        function.at_origin[lane] = at_origin;
+    const FewTriangles few = some_triangles(random);
+    ASSERT_EQ(few.blocks.size(), 4);
+    ASSERT_LT(few.planes.size(), few.triangles.size());
+    const auto plane_of = [&](std::size_t i) {
+        return std::ranges::find_if(few.planes, [&](const TrianglePlane& plane) { return i < plane.end; });
     };
-    for (std::size_t i = 0; i < 3 * TriangleBlock::kLanes; ++i) {
-        TriangleBlock& block = blocks[i / TriangleBlock::kLanes];
-        const std::size_t lane = i % TriangleBlock::kLanes;
-        set(block.height, lane, random_direction(random), uniform(random, -3, 3));
-        set(block.b1, lane, uniform(random, 0.1, 0.3) * random_direction(random), uniform(random, 0, 0.4));
-        set(block.b2, lane, uniform(random, 0.1, 0.3) * random_direction(random), uniform(random, 0, 0.4));
-        block.b1_slope[lane] = block.b2_slope[lane] = 0.3;
-    }
-    blocks[2] = blocks[0];
+    const auto meet_one = [&](std::size_t i, const Stretch<double>& ray) {
+        const double reach_mm = largest_coordinate(ray.origin) + few.reach_mm;
+        return meet_in_plane(few.triangles[i], meet_plane(plane_of(i)->height, ray), reach_mm);
+    };
     int met = 0;
-    for (int i = 0; i < 10000; ++i) {
-        const Stretch<double> ray{.origin = {uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
-                                  .direction = random_direction(random),
-                                  .from = uniform(random, 0, 2),
-                                  .to = i % 3 == 0 ? 8.0 : 1e30};
-        const TriangleMeeting expected = one_by_one(blocks, ray, 9.0);
-        met += expected.triangle >= 0 ? 1 : 0;
-        ASSERT_LT(expected.triangle, 16);
+    for (std::size_t round = 0; round < 400; ++round) {
+        const RayColumns rays = some_rays(random, 1 + round % RayColumns::kMost);
         for (const SimdLevel level : available_simd_levels()) {
-            const TriangleMeeting found = analytic_kernels(level).meet_first_triangle(blocks, ray, 9.0);
-            ASSERT_EQ(found.triangle, expected.triangle) << simd_name(level);
-            if (expected.triangle >= 0) {
-                ASSERT_EQ(found.meeting.at, expected.meeting.at) << simd_name(level);
-                ASSERT_EQ(found.meeting.b1, expected.meeting.b1) << simd_name(level);
-                ASSERT_EQ(found.meeting.b2, expected.meeting.b2) << simd_name(level);
+            MeetingColumns found;
+            analytic_kernels(level).meet_triangles(few, rays, found);
+            for (std::size_t i = 0; i < rays.size; ++i) {
+                const FirstMeeting expected = first_of(few.triangles.size(), ray_of(rays, i), meet_one);
+                ASSERT_LT(expected.which, static_cast<int>(few.triangles.size() / 2));
+                met += expected.is_one() ? 1 : 0;
+                expect_same(found.first(i), expected, level);
+                expect_same(analytic_kernels(level).meet_first_triangle(few, ray_of(rays, i)), expected, level);
             }
         }
     }
     EXPECT_GT(met, 2000);
+}
+
+// What shares a plane is met there: beside it, and from a plane that stands off by more than rounding, not.
+TEST(FewTriangles, SharePlanesThatAreTheSameToRounding) {
+    FewTriangles few{.reach_mm = 10.0};
+    const TriangleSides first{{0, 0, 5}, {1, 0, 0}, {0, 1, 0}};
+    few.add(first);
+    few.add({{3, 3, 5}, {0, 2, 0}, {2, 0, 0}});  // from the other side
+    few.add({{3, 3, 5.0 + 1e-13}, {0, 2, 0}, {2, 0, 0}});
+    few.add({{0, 0, 5}, {1, 0, 0}, {0, 1, 1e-13}});
+    few.add(first);  // one that is not the last before it is not found again
+    std::vector<std::size_t> ends;
+    std::ranges::transform(few.planes, std::back_inserter(ends), &TrianglePlane::end);
+    EXPECT_EQ(ends, (std::vector<std::size_t>{2, 3, 4, 5}));
 }
 
 }  // namespace lensproof::scene::analytic_kernels_test
