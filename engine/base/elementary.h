@@ -83,9 +83,10 @@ constexpr T exponential_of_negative(const T& x) {
     }
 }
 
-/// (cos x, sin x) of |x| ≤ π/4, each within 2 ulp.
-constexpr Vec2d cos_sin_within_eighth(double x) {
-    const double minus_x2 = -(x * x);
+/// (cos x, sin x) of |x| ≤ π/4, each within 2 ulp: of a double or of a packet of them.
+template <class T>
+constexpr Vec2<T> cos_sin_within_eighth(const T& x) {
+    const T minus_x2 = -(x * x);
     return {elementary_detail::factorial_series<0, 18, 2>(minus_x2),
             x * elementary_detail::factorial_series<1, 19, 2>(minus_x2)};
 }

@@ -17,7 +17,7 @@ constexpr std::size_t kQueries = 1024;  // so that neither branches nor sines ar
 struct Query {
     Vec3d wo;
     Vec3d wi;
-    double u_lobe, u1, u2;
+    scene::BsdfNumbers numbers;
 };
 
 std::vector<Query> queries() {
@@ -26,7 +26,7 @@ std::vector<Query> queries() {
     for (std::size_t i = 0; i < kQueries; ++i) {
         const Vec3d wo = scene::direction(uniform(), 6.283 * uniform());
         const Vec3d wi = scene::direction(uniform(), 6.283 * uniform());
-        all.push_back({wo, wi, uniform(), uniform(), uniform()});
+        all.push_back({wo, wi, scene::bsdf_numbers(uniform(), uniform(), uniform())});
     }
     return all;
 }
@@ -36,7 +36,7 @@ void draw(benchmark::State& state, const scene::Bsdf& bsdf) {
     std::size_t i = 0;
     while (state.KeepRunning()) {
         const Query& q = all[i++ % kQueries];
-        benchmark::DoNotOptimize(scene::sample(bsdf, q.wo, q.u_lobe, q.u1, q.u2, scene::Transport::radiance));
+        benchmark::DoNotOptimize(scene::sample(bsdf, q.wo, q.numbers, scene::Transport::radiance));
     }
 }
 
@@ -56,7 +56,8 @@ void look_up(benchmark::State& state, const scene::Texture& texture, const spect
     std::size_t i = 0;
     while (state.KeepRunning()) {
         const Query& q = all[i % kQueries];
-        benchmark::DoNotOptimize(scene::value_at(texture, {q.u1, q.u2}, grid.path(static_cast<int>(i++ % 64))));
+        benchmark::DoNotOptimize(
+            scene::value_at(texture, {q.numbers.u1, q.numbers.u2}, grid.path(static_cast<int>(i++ % 64))));
     }
 }
 

@@ -25,7 +25,8 @@ TEST(Bsdf, SamplesWeighTheirValueOverTheirDensity) {
     for (const auto& [name, bsdf] : scene::broad_cases(tables())) {
         for (int i = 0; i < 2000; ++i) {
             const Vec3d wo = scene::random_direction(uniform);
-            const auto drawn = scene::sample(bsdf, wo, uniform(), uniform(), uniform(), scene::Transport::radiance);
+            const auto drawn = scene::sample(bsdf, wo, scene::bsdf_numbers(uniform(), uniform(), uniform()),
+                                             scene::Transport::radiance);
             if (!drawn || drawn->is_delta) {
                 continue;
             }
@@ -120,7 +121,8 @@ TEST(Bsdf, DrawsDirectionsAsItsDensitySays) {
             expected.push_back(std::max(0.0, 1.0 - total));
             std::vector<int> drawn(expected.size());
             for (int i = 0; i < kSamples; ++i) {
-                const auto s = scene::sample(bsdf, wo, uniform(), uniform(), uniform(), scene::Transport::radiance);
+                const auto s = scene::sample(bsdf, wo, scene::bsdf_numbers(uniform(), uniform(), uniform()),
+                                             scene::Transport::radiance);
                 ++drawn[static_cast<std::size_t>(s && !s->is_delta ? cell_of(s->wi) : kCells)];
             }
             double chi2 = 0.0;

@@ -18,7 +18,8 @@ constexpr double kViews[] = {0.95, 0.6, 0.15, -0.9, -0.4};
 Measured returned_light(const scene::Bsdf& bsdf, const Vec3d& wo, std::size_t wavelength, scene::Uniform& uniform) {
     std::vector<double> weights(40000);
     std::ranges::generate(weights, [&] {
-        const auto drawn = scene::sample(bsdf, wo, uniform(), uniform(), uniform(), scene::Transport::importance);
+        const auto drawn =
+            scene::sample(bsdf, wo, scene::bsdf_numbers(uniform(), uniform(), uniform()), scene::Transport::importance);
         return drawn ? drawn->weight[wavelength] : 0.0;
     });
     return mean_of(weights);
@@ -223,8 +224,8 @@ TEST(RoughSurfaces, StayFiniteAtGrazing) {
             for (int i = 0; i < 4000; ++i) {
                 const double mu = std::pow(10.0, -12.0 * uniform()) * (i % 2 == 0 ? 1.0 : -1.0);
                 const Vec3d wo = scene::direction(mu, 2.0 * pi * uniform());
-                const auto drawn =
-                    scene::sample(surface, wo, uniform(), uniform(), uniform(), scene::Transport::radiance);
+                const auto drawn = scene::sample(surface, wo, scene::bsdf_numbers(uniform(), uniform(), uniform()),
+                                                 scene::Transport::radiance);
                 if (drawn) {
                     EXPECT_TRUE(std::isfinite(drawn->pdf) && drawn->pdf > 0.0) << alpha << " " << mu;
                     for (const float weight : drawn->weight.value) {

@@ -107,14 +107,12 @@ class LightWalk {
                 return;
             }
             const auto numbers = numbers_.next();
-            const auto turn = vertex.turn(numbers, scene::Transport::importance);
-            if (!turn) {
+            const auto turn = vertex.turn_from_light(scene::bsdf_numbers(numbers[0], numbers[1], numbers[2]));
+            if (!turn.bsdf || (is_others && !turn.bsdf->is_delta)) {
                 return;
             }
-            const auto& [scattered, onwards, wo] = *turn;
-            if (is_others && !scattered.is_delta) {
-                return;
-            }
+            const auto& [drawn, onwards, wo] = turn;
+            const scene::BsdfSample& scattered = *drawn;
             throughput *=
                 scattered.weight * spectral::SpectralSample(shading_correction(vertex, wo, onwards, scattered.wi));
             if (scattered.is_dispersed && !is_hero_alone_) {
@@ -130,7 +128,7 @@ class LightWalk {
             }
             is_mirrored_ = scattered.is_delta;
             is_mirrored_throughout_ = is_mirrored_throughout_ && is_mirrored_;
-            ray = vertex.ray(onwards);
+            ray = {scene::ray_origin(vertex.hit, onwards), onwards};
         }
     }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "engine/base/infinity.h"
 #include "engine/render/integrators/mis_weight.h"
@@ -11,11 +12,22 @@ namespace lensproof::render {
 
 namespace {
 
+/// Light that reaches a path where it has arrived, if its way is free.
+struct SampledLight {
+    scene::Segment segment;
+    spectral::SpectralSample light;  // but for what a map has at
+    scene::MapPlace place;
+    bool is_hero_alone = false;
+};
+
 /// A path on its way, between one question to the scene's geometry and the next.
 class PathWalk {
   public:
-    PathWalk(const scene::Scene& scene, const PathSettings& settings, PathStart& start)
-        : scene_(&scene), settings_(&settings), start_(&start), ray_(start.ray) {}
+    /// `result` is what the path brings.
+    PathWalk(const scene::Scene& scene, const PathSettings& settings, PathStart& start, PathRadiance& result)
+        : scene_(&scene), settings_(&settings), start_(&start), ray_(start.ray), result_(&result) {
+        result = {};
+    }
 
     [[nodiscard]] const Ray<double>& ray() const { return ray_; }
 
@@ -23,11 +35,12 @@ class PathWalk {
     void leave_at(const scene::MapPlace& place) { ahead_ = place; }
 
     [[nodiscard]] PathSampler& sampler() { return start_->numbers; }
-    using Numbers = std::array<double, PathSampler::kNumbers>;
-    /// Takes the numbers for a surface that the ray has met: the next set of its sampler's, and the one after for
-    /// lights, of which it returns where they lie.
-    scene::LightNumbers* take_numbers(const Numbers& numbers, const Numbers& for_lights) {
-        numbers_ = numbers;
+    using Numbers = std::span<const double, NumberColumns::kNumbers>;
+    /// Takes the numbers for a surface that the ray has met: the next set of its sampler's with the direction that
+    /// they draw of a matt one, and the set after for lights, of which it returns where they lie.
+    scene::LightNumbers* take_numbers(Numbers numbers, const Vec3d& matt, Numbers for_lights) {
+        numbers_ = {numbers[0], numbers[1], numbers[2], matt};
+        roulette_ = numbers[3];
         light_numbers_ = {for_lights[0], {for_lights[1], for_lights[2]}};
         return &light_numbers_;
     }
@@ -35,7 +48,7 @@ class PathWalk {
     /// Goes on at what the ray has met. Whether the path has another ray.
     bool arrive(const std::optional<scene::SurfaceHit>& hit) {
         sampled_.reset();
-        ++result_.rays;
+        ++result_->rays;
         if (bounce_ == 0 && start_->drawn != nullptr) {
             enter(hit ? LightOrigin{hit->point, false} : LightOrigin{-1.0 * ray_.direction, true});
         }
@@ -49,8 +62,6 @@ class PathWalk {
     /// What has to be free for a light to be seen from where the path has arrived. Nothing: it sees none.
     [[nodiscard]] const scene::Segment* to_light() const { return sampled_ ? &sampled_->segment : nullptr; }
     void see_light() { add(scene::light_of(sampled_->light, sampled_->place, start_->path), sampled_->is_hero_alone); }
-
-    [[nodiscard]] const PathRadiance& result() const { return result_; }
 
   private:
     [[nodiscard]] bool is_mirror_wanted() const { return bounce_ == 0 && settings_->begins_at_mirror; }
@@ -82,7 +93,7 @@ class PathWalk {
         }
         const Vec3d backwards = -1.0 * ray_.direction;
         const PathVertex vertex(hit, backwards, *scene_, start_->path);
-        if (bounce_ == 0) {
+        if (bounce_ == 0 && start_->wants_first) {
             note_first(vertex);
         }
         if (bounce_ == settings_->max_bounces || !vertex.is_consistent(backwards, vertex.wo)) {
@@ -98,30 +109,35 @@ class PathWalk {
     }
 
     bool turn(const PathVertex& vertex) {
-        const auto turn = vertex.turn(numbers_, scene::Transport::radiance);
-        if (!turn || (is_mirror_wanted() && !turn->bsdf.is_delta)) {
+        const auto drawn = scene::sample(vertex.bsdf, vertex.wo, numbers_, scene::Transport::radiance);
+        if (!drawn || (is_mirror_wanted() && !drawn->is_delta)) {
             return false;
         }
-        throughput_ *= turn->bsdf.weight;
-        if (turn->bsdf.is_dispersed) {
+        const Vec3d onwards = vertex.frame.to_world(drawn->wi);
+        if (!vertex.is_consistent(onwards, drawn->wi)) {
+            return false;
+        }
+        throughput_ *= drawn->weight;
+        if (drawn->is_dispersed) {
             is_hero_alone_ = true;
             weight_.hero_goes_alone();
         }
-        if (!survives_roulette(*settings_, bounce_, numbers_[3], throughput_)) {
+        if (!survives_roulette(*settings_, bounce_, roulette_, throughput_)) {
             return false;
         }
-        weight_.turn(weighed(vertex, *turn));
+        weight_.turn(weighed(vertex, *drawn, onwards));
         from_ = vertex.hit.point;
-        ray_ = vertex.ray(turn->onwards);
+        ray_.origin = scene::ray_origin(vertex.hit, onwards);
+        ray_.direction = onwards;
         ++bounce_;
         return true;
     }
 
     void add(const spectral::SpectralSample& light, bool is_hero_alone) {
         if (is_hero_alone) {
-            result_.hero_radiance += light[0];
+            result_->hero_radiance += light[0];
         } else {
-            result_.radiance += light;
+            result_->radiance += light;
         }
     }
 
@@ -131,11 +147,12 @@ class PathWalk {
     }
 
     /// Only as much of a turn as weights need.
-    [[nodiscard]] PathTurn weighed(const PathVertex& vertex, const PathVertex::Turn& turn) const {
-        return turn.bsdf.is_delta ? PathTurn{.is_delta = true,
-                                             .is_from_camera_alone = start_->drawn != nullptr &&
-                                                                     vertex.as_from(turn.onwards, turn.bsdf.wi).is_bent}
-                                  : weighed(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.pdf);
+    [[nodiscard]] PathTurn weighed(const PathVertex& vertex, const scene::BsdfSample& drawn,
+                                   const Vec3d& onwards) const {
+        return drawn.is_delta ? PathTurn{.is_delta = true,
+                                         .is_from_camera_alone =
+                                             start_->drawn != nullptr && vertex.as_from(onwards, drawn.wi).is_bent}
+                              : weighed(vertex, onwards, drawn.wi, drawn.pdf);
     }
     [[nodiscard]] PathTurn weighed(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi,
                                    double to_light) const {
@@ -161,31 +178,25 @@ class PathWalk {
             return;
         }
         scene::fetch(light->place);
-        ++result_.rays;
+        ++result_->rays;
         const Vec3d wi = vertex.frame.to_local(light->direction);
         const double to_light =
             light->pdf > 0.0 ? scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
         const double weight = weight_.of_sample(*light, weighed(vertex, light->direction, wi, to_light));
-        sampled_ = {.segment = {scene::ray_origin(vertex.hit, light->direction), light->end},
-                    .light = static_cast<float>(weight) * (throughput_ * scattering * light->value),
-                    .place = light->place,
-                    .is_hero_alone = is_hero_alone_};
+        SampledLight& sampled = sampled_.emplace();
+        sampled.segment.from = scene::ray_origin(vertex.hit, light->direction);
+        sampled.segment.to = light->end;
+        sampled.light = static_cast<float>(weight) * (throughput_ * scattering * light->value);
+        sampled.place = light->place;
+        sampled.is_hero_alone = is_hero_alone_;
     }
 
     void note_first(const PathVertex& vertex) {
         const bool is_behind = vertex.wo.z < 0.0;
-        result_.first = FirstSurface{.point = vertex.hit.point,
-                                     .normal = (is_behind ? -1.0 : 1.0) * vertex.frame.z,
-                                     .albedo = scene::normal_albedo(vertex.bsdf)};
+        result_->first = FirstSurface{.point = vertex.hit.point,
+                                      .normal = (is_behind ? -1.0 : 1.0) * vertex.frame.z,
+                                      .albedo = scene::normal_albedo(vertex.bsdf)};
     }
-
-    /// Light that reaches the path where it has arrived, if its way is free.
-    struct SampledLight {
-        scene::Segment segment;
-        spectral::SpectralSample light;  // but for what a map has at
-        scene::MapPlace place;
-        bool is_hero_alone = false;
-    };
 
     const scene::Scene* scene_;
     const PathSettings* settings_;
@@ -197,10 +208,11 @@ class PathWalk {
     spectral::SpectralSample throughput_{1.0F};
     CameraMisWeight weight_;
     scene::MapPlace ahead_;
-    Numbers numbers_{};
+    scene::BsdfNumbers numbers_;
+    double roulette_ = 0.0;
     scene::LightNumbers light_numbers_;
     std::optional<SampledLight> sampled_;
-    PathRadiance result_;
+    PathRadiance* result_;
 };
 
 /// To the walks that have met something.
@@ -208,26 +220,30 @@ void give_numbers(const scene::Lights& lights, std::span<PathWalk* const> walks,
                   std::span<const std::optional<scene::SurfaceHit>> hits) {
     constexpr std::size_t kWalks = NumberColumns::kMost / 2;
     NumberColumns columns;
+    std::array<PathWalk*, kWalks> arrived{};
     std::array<scene::LightNumbers*, kWalks> for_lights{};
     for (std::size_t first = 0; first < walks.size(); first += kWalks) {
         const std::size_t end = std::min(walks.size(), first + kWalks);
-        columns.size = 0;
+        std::size_t count = 0;
         for (std::size_t i = first; i < end; ++i) {
             if (hits[i]) {
-                columns.add(walks[i]->sampler(), 1);
-                columns.add(walks[i]->sampler(), 2);
+                arrived[count++] = walks[i];
+            }
+        }
+        columns.size = 0;
+        columns.with_matt = static_cast<int>(count);
+        for (const std::uint64_t sets : {1, 2}) {
+            for (std::size_t k = 0; k < count; ++k) {
+                columns.add(arrived[k]->sampler(), sets);
             }
         }
         number_kernels().draw(columns);
-        std::size_t column = 0;
-        for (std::size_t i = first; i < end; ++i) {
-            if (hits[i]) {
-                walks[i]->sampler().skip();
-                for_lights[column / 2] = walks[i]->take_numbers(columns.numbers(column), columns.numbers(column + 1));
-                column += 2;
-            }
+        for (std::size_t k = 0; k < count; ++k) {
+            arrived[k]->sampler().skip();
+            for_lights[k] =
+                arrived[k]->take_numbers(columns.numbers(k), columns.matt_direction(k), columns.numbers(count + k));
         }
-        lights.draw_ahead(std::span(for_lights).first(column / 2));
+        lights.draw_ahead(std::span(for_lights).first(count));
     }
 }
 
@@ -257,18 +273,23 @@ void find_in(const scene::Environment& map, std::span<PathWalk* const> walks,
 
 void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::span<PathStart> starts,
                  std::span<PathRadiance> found) {
+    // On their way at a time: enough for whole packets and for memory to be asked ahead, few enough for the caches.
+    constexpr std::size_t kTogether = 128;
+    const std::size_t together = std::min(kTogether, starts.size());
     std::vector<PathWalk> walks;
-    walks.reserve(starts.size());
+    walks.reserve(together);
     std::vector<PathWalk*> going;
-    going.reserve(starts.size());
-    for (PathStart& start : starts) {
-        going.push_back(&walks.emplace_back(scene, settings, start));
+    going.reserve(together);
+    std::size_t begun = 0;
+    for (; begun < together; ++begun) {
+        going.push_back(&walks.emplace_back(scene, settings, starts[begun], found[begun]));
     }
+    std::vector<PathWalk*> ended;
     std::vector<Ray<double>> rays;
-    std::vector<std::optional<scene::SurfaceHit>> hits(starts.size());
+    std::vector<std::optional<scene::SurfaceHit>> hits(together);
     std::vector<PathWalk*> seeing;
     std::vector<scene::Segment> segments;
-    std::vector<std::uint8_t> are_blocked(starts.size());
+    std::vector<std::uint8_t> are_blocked(together);
     while (!going.empty()) {
         rays.clear();
         for (PathWalk* walk : going) {
@@ -281,11 +302,14 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
         give_numbers(scene.lights, going, hits);
         seeing.clear();
         segments.clear();
+        ended.clear();
         std::size_t still_going = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             PathWalk* walk = going[i];
             if (walk->arrive(hits[i])) {
                 going[still_going++] = walk;
+            } else {
+                ended.push_back(walk);
             }
             if (const scene::Segment* segment = walk->to_light()) {
                 seeing.push_back(walk);
@@ -299,20 +323,26 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
                 seeing[i]->see_light();
             }
         }
+        for (std::size_t i = 0; i < ended.size() && begun < starts.size(); ++i, ++begun) {
+            going.push_back(std::construct_at(ended[i], scene, settings, starts[begun], found[begun]));
+        }
     }
-    std::ranges::transform(walks, found.begin(), [](const PathWalk& walk) { return walk.result(); });
 }
 
 PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const spectral::PathWavelengths& path,
                         const PathSettings& settings, PathSampler& numbers) {
     PathStart start{.ray = ray, .path = path, .numbers = numbers};
-    PathWalk walk(scene, settings, start);
+    PathRadiance found;
+    PathWalk walk(scene, settings, start, found);
     for (bool is_going = true; is_going;) {
         const auto [origin, direction] = walk.ray();
         const auto hit = scene::intersect(*scene.geometry, origin, direction, 0.0, kInfinity);
         if (hit) {
-            const PathWalk::Numbers next = walk.sampler().next();
-            walk.take_numbers(next, walk.sampler().peek());
+            const auto numbers_here = walk.sampler().next();
+            const auto for_lights = walk.sampler().peek();
+            walk.take_numbers(std::span(numbers_here).first<NumberColumns::kNumbers>(),
+                              cosine_direction(numbers_here[1], numbers_here[2]),
+                              std::span(for_lights).first<NumberColumns::kNumbers>());
         }
         is_going = walk.arrive(hit);
         const scene::Segment* segment = walk.to_light();
@@ -321,7 +351,7 @@ PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const
         }
     }
     numbers = start.numbers;
-    return walk.result();
+    return found;
 }
 
 PathTracer::PathTracer(const View& view, Combination combination)
@@ -329,6 +359,9 @@ PathTracer::PathTracer(const View& view, Combination combination)
              combination == Combination::weighed ? PathCarry::wavelengths_and_pdfs : PathCarry::wavelengths),
       view_(view),
       is_weighed_(combination == Combination::weighed) {
+    samples_.reserve(kBatch);  // paths that are weighed point into it
+    starts_.reserve(kBatch);
+    found_.resize(kBatch);
     if (view.has_features) {
         albedo_weights_ = view.camera->albedo_weights();
     }
@@ -336,50 +369,53 @@ PathTracer::PathTracer(const View& view, Combination combination)
 
 void PathTracer::operator()(const TileSamples& samples, FilmTile& tile) {
     paths_.for_each(samples, tile, [&](const CameraPathBuffer& paths, std::size_t path, std::size_t pixel) {
-        batch_.push_back(sample_of(paths, path, pixel));
-        if (batch_.size() == kPathBatch) {
+        start(paths, path, pixel);
+        if (starts_.size() == kBatch) {
             add_batch(tile);
         }
     });
     add_batch(tile);
 }
 
-PathTracer::Sample PathTracer::sample_of(const CameraPathBuffer& paths, std::size_t path, std::size_t pixel) const {
-    return {.pixel = pixel,
-            .sample = paths.sample[path],
-            .wavelengths = view_.camera->grid().path(paths.wavelength[path]),
-            .numbers = PathSampler(view_.seed, paths.pixel[path], paths.sample[path]),
-            .weights = paths.weights[path],
-            .hero_weight = paths.hero_weight(path),
-            .ray = {.camera = view_.camera, .ray = paths.ray(path), .pdf = is_weighed_ ? paths.pdf[path] : PathPdf{}}};
+void PathTracer::start(const CameraPathBuffer& paths, std::size_t path, std::size_t pixel) {
+    const Ray<double> ray = paths.ray(path);
+    Sample& sample = samples_.emplace_back();
+    sample.pixel = pixel;
+    sample.sample = paths.sample[path];
+    sample.weights = paths.weights[path];
+    sample.hero_weight = paths.hero_weight(path);
+    if (is_weighed_) {
+        sample.ray = {.camera = view_.camera, .ray = ray, .pdf = paths.pdf[path]};
+    }
+    starts_.push_back({.ray = view_.camera->to_world(ray),
+                       .path = view_.camera->grid().path(paths.wavelength[path]),
+                       .numbers = PathSampler(view_.seed, paths.pixel[path], paths.sample[path]),
+                       .drawn = is_weighed_ ? &sample.ray : nullptr,
+                       .wants_first = view_.has_features});
 }
 
 void PathTracer::add_batch(FilmTile& tile) {
-    starts_.clear();
-    for (const Sample& sample : batch_) {
-        starts_.push_back({.ray = view_.camera->to_world(sample.ray.ray),
-                           .path = sample.wavelengths,
-                           .numbers = sample.numbers,
-                           .drawn = is_weighed_ ? &sample.ray : nullptr});
-    }
-    found_.resize(batch_.size());
     trace_paths(view_.scene(), view_.paths, starts_, found_);
-    for (std::size_t i = 0; i < batch_.size(); ++i) {
-        add(batch_[i], found_[i], tile);
+    for (std::size_t i = 0; i < starts_.size(); ++i) {
+        add(i, tile);
     }
-    batch_.clear();
+    samples_.clear();
+    starts_.clear();
 }
 
-void PathTracer::add(const Sample& sample, const PathRadiance& found, FilmTile& tile) const {
+void PathTracer::add(std::size_t i, FilmTile& tile) const {
+    const Sample& sample = samples_[i];
+    const PathRadiance& found = found_[i];
+    const spectral::PathWavelengths& path = starts_[i].path;
     tile.count_rays(found.rays);
     std::array<float, spectral::kWavelengthsPerPath> irradiance = sample.weights;
-    for (std::size_t i = 0; i < irradiance.size(); ++i) {
-        irradiance[i] *= found.radiance[i];
+    for (std::size_t m = 0; m < irradiance.size(); ++m) {
+        irradiance[m] *= found.radiance[m];
     }
     irradiance[0] += sample.hero_weight * found.hero_radiance;
-    tile.add(sample.pixel, sample.sample, sample.wavelengths.index, irradiance);
-    if (view_.has_features && found.first) {
-        add_features(sample.pixel, sample.wavelengths, *found.first, tile);
+    tile.add(sample.pixel, sample.sample, path.index, irradiance);
+    if (found.first) {
+        add_features(sample.pixel, path, *found.first, tile);
     }
 }
 

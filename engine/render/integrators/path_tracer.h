@@ -46,15 +46,13 @@ struct PathStart {
     /// What light paths bring to the camera, one for each path of each pixel, is added to what is found: each path
     /// counts as much as mis_weight.h gives it, and the radiance is a part. Nothing: it is all of it.
     const CameraRay* drawn = nullptr;
+    bool wants_first = false;  // PathRadiance::first
 };
-
-/// Paths that are best traced together: enough for whole packets and for memory to be asked ahead, few enough to stay
-/// in the caches.
-inline constexpr std::size_t kPathBatch = 64;
 
 /// Of each start one estimate of the radiance that arrives at its ray's origin against its direction, at the path's
 /// wavelengths: unbiased but for paths of more than `max_bounces` scatterings, which are left out. What a path finds
-/// does not depend on those beside it. `found`: as many.
+/// does not depend on those beside it; some of them are on their way at a time, and where one ends the next begins.
+/// `found`: as many.
 ///
 /// Each surface point adds what lights send there directly, found by sampling lights and by following the BSDF, weighed
 /// by the power heuristic (Veach & Guibas, SIGGRAPH 1995). Where refraction parts the wavelengths the hero goes on
@@ -83,20 +81,20 @@ class PathTracer {
     struct Sample {
         std::size_t pixel = 0;  // in the tile
         std::uint32_t sample = 0;
-        spectral::PathWavelengths wavelengths;
-        PathSampler numbers;
         std::array<float, spectral::kWavelengthsPerPath> weights{};
         float hero_weight = 0.0F;
-        CameraRay ray;
+        CameraRay ray;  // of one that is weighed
     };
-    [[nodiscard]] Sample sample_of(const CameraPathBuffer& paths, std::size_t path, std::size_t pixel) const;
+    static constexpr std::size_t kBatch = 512;  // a buffer's paths, so that few are the last ones on their way
+
+    void start(const CameraPathBuffer& paths, std::size_t path, std::size_t pixel);
     void add_batch(FilmTile& tile);
-    void add(const Sample& sample, const PathRadiance& found, FilmTile& tile) const;
+    void add(std::size_t i, FilmTile& tile) const;
     void add_features(std::size_t pixel, const spectral::PathWavelengths& strata, const FirstSurface& first,
                       FilmTile& tile) const;
 
     TilePaths paths_;
-    std::vector<Sample> batch_;
+    std::vector<Sample> samples_;  // of the batch, as the next two
     std::vector<PathStart> starts_;
     std::vector<PathRadiance> found_;
     std::vector<Vec3d> albedo_weights_;  // a stratum each; none without features

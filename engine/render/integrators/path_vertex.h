@@ -28,7 +28,7 @@ struct PathSettings {
 
 /// A surface point on a path, with its scattering at the path's wavelengths.
 struct PathVertex {
-    scene::SurfaceHit hit;
+    const scene::SurfaceHit& hit;
     Vec3d backwards;       // world, towards where the path comes from
     Basis frame;           // z: the shading normal
     bool is_bent;          // it, for a camera there
@@ -36,7 +36,7 @@ struct PathVertex {
     double cos_backwards;  // |cos| of that about the geometric normal
     scene::Bsdf bsdf;
 
-    /// `backwards`: world, unit length, towards where the path comes from. The scene outlives the vertex.
+    /// `backwards`: world, unit length, towards where the path comes from. Hit and scene outlive the vertex.
     PathVertex(const scene::SurfaceHit& at, const Vec3d& backwards_, const scene::Scene& scene,
                const spectral::PathWavelengths& path)
         : hit(at),
@@ -74,41 +74,37 @@ struct PathVertex {
         return {other.to_local(onwards), other.to_local(backwards), true};
     }
 
-    /// The ray that goes on from here.
-    [[nodiscard]] Ray<double> ray(const Vec3d& onwards) const { return {scene::ray_origin(hit, onwards), onwards}; }
-
-    /// A direction that the path goes on in; of a path from a light, in the frame of one that comes from there.
+    /// A direction that a path from a light goes on in, in the frame of one that comes from there.
     struct Turn {
-        scene::BsdfSample bsdf;
-        Vec3d onwards;  // world
-        Vec3d wo;       // local, where the path came from
+        std::optional<scene::BsdfSample> bsdf;  // nothing: the path ends
+        Vec3d onwards;                          // world
+        Vec3d wo;                               // local, where the path came from
     };
-    /// Draws one by the first three of these numbers. Nothing where the path ends.
-    [[nodiscard]] std::optional<Turn> turn(const std::array<double, PathSampler::kNumbers>& numbers,
-                                           scene::Transport transport) const {
-        const auto scattered = scene::sample(bsdf, wo, numbers[0], numbers[1], numbers[2], transport);
-        if (!scattered) {
-            return {};
-        }
-        const Vec3d onwards = frame.to_world(scattered->wi);
-        if (transport == scene::Transport::importance) {
-            if (const Seen seen = as_from(onwards, scattered->wi); seen.is_bent) {
-                return bent_turn(*scattered, onwards, seen);
+    [[nodiscard]] Turn turn_from_light(const scene::BsdfNumbers& numbers) const {
+        Turn turn{.bsdf = scene::sample(bsdf, wo, numbers, scene::Transport::importance), .wo = wo};
+        if (turn.bsdf) {
+            turn.onwards = frame.to_world(turn.bsdf->wi);
+            if (const Seen seen = as_from(turn.onwards, turn.bsdf->wi); seen.is_bent) {
+                bend_turn(seen, turn);
+            } else if (!is_consistent(turn.onwards, turn.bsdf->wi)) {
+                turn.bsdf.reset();
             }
         }
-        return is_consistent(onwards, scattered->wi) ? std::optional(Turn{*scattered, onwards, wo}) : std::nullopt;
+        return turn;
     }
 
   private:
-    /// Of a path from a light: drawn in its own frame, weighed in that of the camera's side.
-    [[nodiscard]] std::optional<Turn> bent_turn(scene::BsdfSample drawn, const Vec3d& onwards, const Seen& seen) const {
-        if (drawn.is_delta || !is_consistent(onwards, seen.onwards) || !is_consistent(backwards, seen.backwards)) {
-            return {};
+    /// What was drawn in its own frame is weighed in that of the camera's side.
+    void bend_turn(const Seen& seen, Turn& turn) const {
+        if (turn.bsdf->is_delta || !is_consistent(turn.onwards, seen.onwards) ||
+            !is_consistent(backwards, seen.backwards)) {
+            turn.bsdf.reset();
+            return;
         }
-        drawn.wi = seen.onwards;
-        drawn.weight = static_cast<float>(1.0 / drawn.pdf) *
-                       scene::evaluate(bsdf, seen.backwards, seen.onwards, scene::Transport::importance);
-        return Turn{drawn, onwards, seen.backwards};
+        turn.bsdf->wi = seen.onwards;
+        turn.bsdf->weight = static_cast<float>(1.0 / turn.bsdf->pdf) *
+                            scene::evaluate(bsdf, seen.backwards, seen.onwards, scene::Transport::importance);
+        turn.wo = seen.backwards;
     }
 };
 

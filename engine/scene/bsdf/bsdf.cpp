@@ -87,9 +87,8 @@ double pdf(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transpo
     return std::visit([&](const auto& model) { return pdf(model, wo, wi, transport); }, bsdf);
 }
 
-std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
-                                 Transport transport) {
-    return std::visit([&](const auto& model) { return sample(model, wo, u_lobe, u1, u2, transport); }, bsdf);
+std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers, Transport transport) {
+    return std::visit([&](const auto& model) { return sample(model, wo, numbers, transport); }, bsdf);
 }
 
 bool has_delta(const Bsdf& bsdf) {

@@ -24,9 +24,8 @@ spectral::SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d
 /// less the probability of a delta and of no direction at all.
 double pdf(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 
-/// Draws `wi` from u_lobe, u1, u2, independent and uniform in (0, 1). Nothing where light ends: the weight is then 0.
-std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
-                                 Transport transport);
+/// Draws `wi`. Nothing where light ends: the weight is then 0.
+std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers, Transport transport);
 
 /// Whether `evaluate` is 0 for every pair of directions: lights need not be sampled there.
 bool is_delta(const Bsdf& bsdf);

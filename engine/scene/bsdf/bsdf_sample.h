@@ -1,6 +1,6 @@
 // engine/scene/bsdf/bsdf_sample.h — a direction drawn from a surface's scattering, and what it carries.
 #pragma once
-#include "engine/base/vec.h"
+#include "engine/base/disc.h"
 #include "engine/spectral/spectral_sample.h"
 
 namespace lensproof::scene {
@@ -10,6 +10,18 @@ namespace lensproof::scene {
 /// Stanford 1997, §5.2). A path from the camera asks for `radiance`, its `wo` pointing towards the camera; a path from
 /// a light asks for `importance`, its `wo` pointing towards the light.
 enum class Transport { radiance, importance };
+
+/// What draws a direction: three independent numbers, uniform in (0, 1), and the direction that the last two draw of a
+/// matt surface, which those who draw many find together.
+struct BsdfNumbers {
+    double lobe = 0.0;
+    double u1 = 0.0;
+    double u2 = 0.0;
+    Vec3d matt;
+};
+inline BsdfNumbers bsdf_numbers(double lobe, double u1, double u2) {
+    return {lobe, u1, u2, cosine_direction(u1, u2)};
+}
 
 /// A direction drawn from a surface's scattering.
 struct BsdfSample {

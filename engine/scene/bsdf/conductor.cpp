@@ -68,8 +68,7 @@ double pdf(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transpor
     return pdf_above(bsdf, from, to, ggx_reflection(bsdf.roughness, from, to));
 }
 
-std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
-                                 Transport) {
+std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers, Transport) {
     if (wo.z == 0.0) {
         return std::nullopt;
     }
@@ -79,9 +78,9 @@ std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, dou
                           .is_delta = true};
     }
     const Vec3d from = upwards(wo);
-    const Vec3d wi = u_lobe < several_probability(bsdf, from)
-                         ? bsdf.losses->sample(u1, u2)
-                         : reflected(from, ggx_visible_normal(bsdf.roughness, from, u1, u2));
+    const Vec3d wi = numbers.lobe < several_probability(bsdf, from)
+                         ? bsdf.losses->sample(numbers.u1, numbers.u2)
+                         : reflected(from, ggx_visible_normal(bsdf.roughness, from, numbers.u1, numbers.u2));
     if (!(wi.z > 0.0)) {
         return std::nullopt;
     }

@@ -26,7 +26,7 @@ spectral::SpectralSample mean_conductor_reflectance(const spectral::SpectralSamp
 // As in bsdf.h.
 spectral::SpectralSample evaluate(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double pdf(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
-std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers,
                                  Transport transport);
 
 }  // namespace lensproof::scene

@@ -188,16 +188,16 @@ std::optional<Vec3d> direction_after_one(const DielectricBsdf& bsdf, const Vec3d
 }
 
 /// Draws a direction for one of the wavelengths, each as often.
-std::optional<Vec3d> rough_direction(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2) {
+std::optional<Vec3d> rough_direction(const DielectricBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers) {
     const std::size_t count = distinct_indices(bsdf);
-    const double scaled = u_lobe * static_cast<double>(count);
+    const double scaled = numbers.lobe * static_cast<double>(count);
     const std::size_t drawn = std::min(static_cast<std::size_t>(scaled), count - 1);
     const double u = scaled - static_cast<double>(drawn);
     const double eta = eta_behind(bsdf, wo, drawn);
     const double several =
         bsdf.losses == nullptr ? 0.0 : bsdf.losses->of(wo, wo.z > 0.0 ? eta : 1.0 / eta).at_direction;
-    return u < several ? std::optional(direction_after_several(bsdf, wo, eta, u / several, u1, u2))
-                       : direction_after_one(bsdf, wo, eta, (u - several) / (1.0 - several), u1, u2);
+    return u < several ? std::optional(direction_after_several(bsdf, wo, eta, u / several, numbers.u1, numbers.u2))
+                       : direction_after_one(bsdf, wo, eta, (u - several) / (1.0 - several), numbers.u1, numbers.u2);
 }
 
 }  // namespace
@@ -226,15 +226,15 @@ double pdf(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transpo
     return mean_over_indices(bsdf, wo, [&](double eta) { return pair.at(eta).pdf; });
 }
 
-std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers,
                                  Transport transport) {
     if (wo.z == 0.0) {
         return std::nullopt;
     }
     if (is_delta(bsdf)) {
-        return sample_smooth(bsdf, wo, u_lobe, transport);
+        return sample_smooth(bsdf, wo, numbers.lobe, transport);
     }
-    const std::optional<Vec3d> wi = rough_direction(bsdf, wo, u_lobe, u1, u2);
+    const std::optional<Vec3d> wi = rough_direction(bsdf, wo, numbers);
     if (!wi) {
         return std::nullopt;
     }
@@ -264,13 +264,13 @@ double pdf(const PaneBsdf&, const Vec3d&, const Vec3d&, Transport) {
     return 0.0;
 }
 
-std::optional<BsdfSample> sample(const PaneBsdf& bsdf, const Vec3d& wo, double u_lobe, double, double, Transport) {
+std::optional<BsdfSample> sample(const PaneBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers, Transport) {
     if (wo.z == 0.0) {
         return std::nullopt;
     }
     const spectral::SpectralSample reflectance = pane_reflectance(bsdf, std::abs(wo.z));
     const float hero = reflectance[0];
-    if (u_lobe < hero) {
+    if (numbers.lobe < hero) {
         return BsdfSample{.wi = {-wo.x, -wo.y, wo.z}, .weight = (1.0F / hero) * reflectance, .is_delta = true};
     }
     return BsdfSample{.wi = -1.0 * wo,

@@ -33,12 +33,12 @@ struct PaneBsdf {
 // As in bsdf.h.
 spectral::SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double pdf(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
-std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers,
                                  Transport transport);
 
 spectral::SpectralSample evaluate(const PaneBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double pdf(const PaneBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
-std::optional<BsdfSample> sample(const PaneBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+std::optional<BsdfSample> sample(const PaneBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers,
                                  Transport transport);
 
 /// What a pane reflects at `cos_incidence` in [0, 1].

@@ -12,12 +12,12 @@ double pdf(const DiffuseBsdf&, const Vec3d& wo, const Vec3d& wi, Transport) {
     return on_same_side(wo, wi) ? std::abs(wi.z) * std::numbers::inv_pi : 0.0;
 }
 
-std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, double, double u1, double u2, Transport) {
-    const Vec3d upward = cosine_direction(u1, u2);
-    if (wo.z == 0.0 || upward.z == 0.0) {
+std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers, Transport) {
+    if (wo.z == 0.0 || numbers.matt.z == 0.0) {
         return std::nullopt;
     }
-    return BsdfSample{.wi = on_side_of(wo, upward), .weight = bsdf.albedo, .pdf = upward.z * std::numbers::inv_pi};
+    return BsdfSample{
+        .wi = on_side_of(wo, numbers.matt), .weight = bsdf.albedo, .pdf = numbers.matt.z * std::numbers::inv_pi};
 }
 
 }  // namespace lensproof::scene

@@ -14,7 +14,7 @@ struct DiffuseBsdf {
 // As in bsdf.h.
 spectral::SpectralSample evaluate(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double pdf(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
-std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers,
                                  Transport transport);
 
 }  // namespace lensproof::scene

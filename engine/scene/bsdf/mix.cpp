@@ -22,16 +22,17 @@ double pdf(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport tran
     return sum;
 }
 
-std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers,
                                  Transport transport) {
     std::size_t drawn = 0;
     double below = 0.0;
-    while (drawn + 1 < bsdf.count && u_lobe >= below + bsdf.fraction[drawn]) {
+    while (drawn + 1 < bsdf.count && numbers.lobe >= below + bsdf.fraction[drawn]) {
         below += bsdf.fraction[drawn++];
     }
-    const double u_part = std::clamp((u_lobe - below) / bsdf.fraction[drawn], 0.0, 1.0);
+    BsdfNumbers of_part = numbers;
+    of_part.lobe = std::clamp((numbers.lobe - below) / bsdf.fraction[drawn], 0.0, 1.0);
     std::optional<BsdfSample> result =
-        std::visit([&](const auto& part) { return sample(part, wo, u_part, u1, u2, transport); }, bsdf.part[drawn]);
+        std::visit([&](const auto& part) { return sample(part, wo, of_part, transport); }, bsdf.part[drawn]);
     // A delta's fraction is as large as its probability.
     if (result && !result->is_delta) {
         result->pdf = pdf(bsdf, wo, result->wi, transport);

@@ -26,7 +26,6 @@ struct MixBsdf {
 // As in bsdf.h.
 spectral::SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double pdf(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
-std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
-                                 Transport transport);
+std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers, Transport transport);
 
 }  // namespace lensproof::scene

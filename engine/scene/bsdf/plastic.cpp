@@ -58,8 +58,7 @@ double pdf(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport)
     return on_same_side(wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).pdf : 0.0;
 }
 
-std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
-                                 Transport) {
+std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers, Transport) {
     if (wo.z == 0.0) {
         return std::nullopt;
     }
@@ -67,13 +66,14 @@ std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, doubl
     const Roughness& roughness = bsdf.roughness;
     const double reflectance = bsdf.coat->reflectance(from.z);
     const double p_coat = coat_probability(bsdf, reflectance);
-    const bool at_coat = u_lobe < p_coat;
+    const bool at_coat = numbers.lobe < p_coat;
     if (at_coat && roughness.is_smooth()) {
         return BsdfSample{.wi = {-wo.x, -wo.y, wo.z},
                           .weight = spectral::SpectralSample(static_cast<float>(reflectance / p_coat)),
                           .is_delta = true};
     }
-    const Vec3d wi = at_coat ? reflected(from, ggx_visible_normal(roughness, from, u1, u2)) : cosine_direction(u1, u2);
+    const Vec3d wi =
+        at_coat ? reflected(from, ggx_visible_normal(roughness, from, numbers.u1, numbers.u2)) : numbers.matt;
     if (!(wi.z > 0.0)) {
         return std::nullopt;
     }

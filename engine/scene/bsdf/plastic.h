@@ -26,7 +26,7 @@ PlasticBsdf plastic_bsdf(const spectral::SpectralSample& albedo, const Dielectri
 // As in bsdf.h.
 spectral::SpectralSample evaluate(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double pdf(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
-std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, const BsdfNumbers& numbers,
                                  Transport transport);
 
 }  // namespace lensproof::scene

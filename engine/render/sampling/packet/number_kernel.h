@@ -10,12 +10,12 @@
 namespace lensproof::render {
 
 /// As PathSampler says them, in loops over all that wait for no look-up.
-template <class Abi>
+template <class Abi, class NumberAbi>
 [[gnu::flatten]] void draw_numbers(NumberColumns& columns) {
     using Words = std::experimental::simd<std::uint32_t, Abi>;
     constexpr std::experimental::vector_aligned_tag kAligned;
     constexpr int kMost = NumberColumns::kMost;
-    constexpr int kDimensions = PathSampler::kNumbers;
+    constexpr int kDimensions = NumberColumns::kNumbers;
     constexpr int kStep = 16;
     const int end = (columns.size + kStep - 1) / kStep * kStep;  // whole packets
     alignas(64) std::uint64_t stream[kMost];
@@ -44,12 +44,20 @@ template <class Abi>
             columns.number[d][i] = sampler_detail::scrambled_number(point[d][i], PixelSampler::scramble(stream[i], d));
         }
     }
+    using Numbers = Pack<double, NumberAbi>;
+    for (int i = 0; i < columns.with_matt; i += Numbers::kLanes) {
+        const Vec3<Numbers> matt =
+            cosine_direction(Numbers::load(columns.number[1].data() + i), Numbers::load(columns.number[2].data() + i));
+        matt.x.store(columns.matt[0].data() + i);
+        matt.y.store(columns.matt[1].data() + i);
+        matt.z.store(columns.matt[2].data() + i);
+    }
 }
 
 template <>
 NumberKernels number_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
     using Abi = AbiOf<SimdLevel::LENSPROOF_LEVEL, std::uint32_t>;
-    return {.draw = draw_numbers<Abi>};
+    return {.draw = draw_numbers<Abi, AbiOf<SimdLevel::LENSPROOF_LEVEL, double>>};
 }
 
 }  // namespace lensproof::render

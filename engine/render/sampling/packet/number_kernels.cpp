@@ -11,9 +11,8 @@ void NumberColumns::add(const PathSampler& sampler, std::uint64_t sets) {
     sample[i] = place.sample;
 }
 
-std::array<double, PathSampler::kNumbers> NumberColumns::numbers(int i) const {
-    const auto at = static_cast<std::size_t>(i);
-    return {number[0][at], number[1][at], number[2][at], number[3][at], number[4][at]};
+std::array<double, NumberColumns::kNumbers> NumberColumns::numbers(std::size_t i) const {
+    return {number[0][i], number[1][i], number[2][i], number[3][i]};
 }
 
 const NumberKernels& number_kernels(std::optional<SimdLevel> level) {

@@ -4,14 +4,17 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/base/disc.h"
 #include "engine/base/simd_level.h"
 #include "engine/render/sampling/path_sampler.h"
 
 namespace lensproof::render {
 
-/// Of samplers side by side what each says next, a column a number.
+/// Of samplers side by side what each says next, a column a number, of which paths take these at a surface.
 struct alignas(64) NumberColumns {
     static constexpr int kMost = 64;
+    static constexpr int kNumbers = 4;
+    static_assert(kNumbers <= PathSampler::kNumbers);
     template <class Number>
     using Column = std::array<Number, kMost>;
 
@@ -19,12 +22,15 @@ struct alignas(64) NumberColumns {
     Column<std::uint64_t> set{};
     Column<std::uint32_t> pixel{};
     Column<std::uint32_t> sample{};
-    std::array<Column<double>, PathSampler::kNumbers> number;
+    std::array<Column<double>, kNumbers> number;
+    std::array<Column<double>, 3> matt;  // cosine_direction of the second and third
     int size = 0;
+    int with_matt = 0;  // of so many, the first ones
 
     /// Adds what `sampler` says when it has been asked `sets` times more.
     void add(const PathSampler& sampler, std::uint64_t sets);
-    [[nodiscard]] std::array<double, PathSampler::kNumbers> numbers(int i) const;
+    [[nodiscard]] std::array<double, kNumbers> numbers(std::size_t i) const;
+    [[nodiscard]] Vec3d matt_direction(std::size_t i) const { return {matt[0][i], matt[1][i], matt[2][i]}; }
 };
 
 /// The loops of one level; all levels yield the same bits.

@@ -67,7 +67,7 @@ TEST(Fresnel, ReflectsTotallyBeyondTheCriticalAngle) {
     const Bsdf glass = DielectricBsdf{.eta = spectral::SpectralSample(1.5F)};
     const Vec3d inside = direction(-std::cos(critical + 1e-3), 0.3);
     for (const double u : {0.01, 0.5, 0.99}) {
-        const auto drawn = sample(glass, inside, u, 0.5, 0.5, kRadiance);
+        const auto drawn = sample(glass, inside, bsdf_numbers(u, 0.5, 0.5), kRadiance);
         ASSERT_TRUE(drawn);
         EXPECT_EQ(drawn->wi, (Vec3d{-inside.x, -inside.y, inside.z}));
         EXPECT_EQ(drawn->weight, spectral::SpectralSample(1.0F));
@@ -83,7 +83,7 @@ TEST(Dielectric, EachHeroFollowsSnellAlone) {
         std::swap(glass.eta[0], glass.eta[hero]);
         for (const double mu : {0.99, 0.7, 0.2, -0.95, -0.8}) {
             const Vec3d wo = direction(mu, 0.4);
-            const auto drawn = sample(Bsdf(glass), wo, 0.999, 0.5, 0.5, kRadiance);
+            const auto drawn = sample(Bsdf(glass), wo, bsdf_numbers(0.999, 0.5, 0.5), kRadiance);
             ASSERT_TRUE(drawn);
             ASSERT_LT(drawn->wi.z * wo.z, 0.0);
             const double eta = mu > 0.0 ? double{indices[hero]} : 1.0 / double{indices[hero]};
@@ -103,7 +103,7 @@ TEST(Dielectric, EachHeroFollowsSnellAlone) {
 TEST(Dielectric, ReflectionKeepsAllWavelengths) {
     const spectral::SpectralSample indices({1.5F, 1.55F, 1.6F, 1.7F});
     const Vec3d wo = direction(0.6, 1.0);
-    const auto drawn = sample(Bsdf(DielectricBsdf{.eta = indices}), wo, 1e-3, 0.5, 0.5, kRadiance);
+    const auto drawn = sample(Bsdf(DielectricBsdf{.eta = indices}), wo, bsdf_numbers(1e-3, 0.5, 0.5), kRadiance);
     ASSERT_TRUE(drawn);
     EXPECT_FALSE(drawn->is_dispersed);
     EXPECT_EQ(drawn->wi, (Vec3d{-wo.x, -wo.y, wo.z}));
@@ -120,8 +120,8 @@ TEST(SmoothSurfaces, KeepAllLight) {
     for (const double mu : {1.0, 0.9, 0.3, 0.01, -1.0, -0.9, -0.3}) {
         const double eta = mu > 0.0 ? 1.5 : 1.0 / 1.5;
         for (const double u : {1e-9, 0.02, 0.1, 0.6, 0.999}) {
-            const auto importance = sample(glass, direction(mu, 2.0), u, 0.5, 0.5, Transport::importance);
-            const auto radiance = sample(glass, direction(mu, 2.0), u, 0.5, 0.5, Transport::radiance);
+            const auto importance = sample(glass, direction(mu, 2.0), bsdf_numbers(u, 0.5, 0.5), Transport::importance);
+            const auto radiance = sample(glass, direction(mu, 2.0), bsdf_numbers(u, 0.5, 0.5), Transport::radiance);
             ASSERT_TRUE(importance && radiance);
             EXPECT_EQ(importance->weight, spectral::SpectralSample(1.0F));
             const bool passes = radiance->wi.z * mu < 0.0;
@@ -130,8 +130,10 @@ TEST(SmoothSurfaces, KeepAllLight) {
         }
         const Bsdf mirror = ConductorBsdf{.n = spectral::SpectralSample(0.0F), .k = spectral::SpectralSample(3.0F)};
         const Bsdf paint = DiffuseBsdf{.albedo = spectral::SpectralSample(1.0F)};
-        EXPECT_EQ(sample(mirror, direction(mu, 2.0), 0.5, 0.5, 0.5, kRadiance)->weight, spectral::SpectralSample(1.0F));
-        EXPECT_EQ(sample(paint, direction(mu, 2.0), 0.5, 0.5, 0.5, kRadiance)->weight, spectral::SpectralSample(1.0F));
+        EXPECT_EQ(sample(mirror, direction(mu, 2.0), bsdf_numbers(0.5, 0.5, 0.5), kRadiance)->weight,
+                  spectral::SpectralSample(1.0F));
+        EXPECT_EQ(sample(paint, direction(mu, 2.0), bsdf_numbers(0.5, 0.5, 0.5), kRadiance)->weight,
+                  spectral::SpectralSample(1.0F));
     }
 }
 

@@ -72,7 +72,7 @@ TEST(Material, OfNoFractionIsLeftOut) {
         EXPECT_NEAR(normal_albedo(there)[0], 0.2 + 0.6 * fraction, 0x1p-22);
         EXPECT_EQ(std::get<MixBsdf>(there).count, fraction == 0.5 ? 2U : 1U);
         for (const double u_lobe : {1e-9, 0.5, 1.0 - 1e-9}) {
-            const auto drawn = sample(there, {0.0, 0.0, 1.0}, u_lobe, 0.3, 0.6, Transport::radiance);
+            const auto drawn = sample(there, {0.0, 0.0, 1.0}, bsdf_numbers(u_lobe, 0.3, 0.6), Transport::radiance);
             ASSERT_TRUE(drawn);
             EXPECT_NEAR(drawn->weight[0], 0.2 + 0.6 * fraction, 0x1p-22);
         }

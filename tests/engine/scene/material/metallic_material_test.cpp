@@ -38,7 +38,7 @@ MetallicMaterial made(double base, double metallic, double transmission, Varying
 Measured returned_light(const MixBsdf& bsdf, const Vec3d& wo, Uniform& uniform) {
     std::vector<double> weights(8000);
     std::ranges::generate(weights, [&] {
-        const auto drawn = sample(bsdf, wo, uniform(), uniform(), uniform(), Transport::importance);
+        const auto drawn = sample(bsdf, wo, bsdf_numbers(uniform(), uniform(), uniform()), Transport::importance);
         return drawn ? drawn->weight[1] : 0.0;
     });
     return lensproof::mean_of(weights);
@@ -101,7 +101,7 @@ TEST(MetallicMaterial, HasItsBaseColour) {
     EXPECT_NEAR(albedo(0.0, 1.0, false), pane + (1.0 - pane) * kRho, 1e-6);
     const MixBsdf bsdf = at_point(made(kRho, 0.0, 1.0, smooth, false), {}, grid().path(0));
     const Vec3d wo = direction(0.5, 1.0);
-    const auto through = sample(bsdf, wo, 0.9, 0.5, 0.5, Transport::radiance);
+    const auto through = sample(bsdf, wo, bsdf_numbers(0.9, 0.5, 0.5), Transport::radiance);
     ASSERT_TRUE(through);
     EXPECT_EQ(through->wi, -1.0 * wo) << "a pane bends nothing";
     EXPECT_NEAR(through->weight[0], kRho, 1e-6);

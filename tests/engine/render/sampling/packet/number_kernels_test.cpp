@@ -13,6 +13,7 @@ TEST(NumberKernels, EveryLevelSaysWhatTheSamplersSay) {
     for (int size = 0; size <= NumberColumns::kMost; ++size) {
         std::vector<PathSampler> samplers;
         NumberColumns columns;
+        columns.with_matt = size / 2;
         for (int i = 0; i < size; ++i) {
             PathSampler sampler(random(), static_cast<std::uint32_t>(random()), static_cast<std::uint32_t>(random()));
             sampler.skip(static_cast<std::uint64_t>(i));
@@ -23,8 +24,14 @@ TEST(NumberKernels, EveryLevelSaysWhatTheSamplersSay) {
         for (const SimdLevel level : available_simd_levels()) {
             NumberColumns found = columns;
             number_kernels(level).draw(found);
-            for (int i = 0; i < size; ++i) {
-                EXPECT_EQ(found.numbers(i), samplers[static_cast<std::size_t>(i)].peek()) << simd_name(level);
+            for (std::size_t i = 0; i < samplers.size(); ++i) {
+                const auto expected = samplers[i].peek();
+                for (std::size_t k = 0; k < NumberColumns::kNumbers; ++k) {
+                    EXPECT_EQ(found.numbers(i)[k], expected[k]) << simd_name(level);
+                }
+                if (static_cast<int>(i) < found.with_matt) {
+                    EXPECT_EQ(found.matt_direction(i), cosine_direction(expected[1], expected[2])) << simd_name(level);
+                }
             }
         }
     }
