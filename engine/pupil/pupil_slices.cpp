@@ -17,6 +17,15 @@ double position_of(int slice, int slices) {
     return slices > 1 ? slice / (slices - 1.0) : 0.0;
 }
 
+/// Of what begins within any one step.
+int most_within_a_step(const std::vector<std::int32_t>& last_by_step) {
+    int most = 0;
+    for (std::size_t i = 1; i < last_by_step.size(); ++i) {
+        most = std::max(most, last_by_step[i] - last_by_step[i - 1]);
+    }
+    return most;
+}
+
 }  // namespace
 
 PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(slices) {
@@ -52,10 +61,12 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
                .fractions = nodes.fractions.data(),
                .per_step = per_step_.data(),
                .node_below = node_below_.data(),
+               .nodes_in_step = most_within_a_step(node_below_),
                .regions = regions_.data(),
                .panel_below = panel_below_.data(),
                .panel_fractions = fractions.at.data(),
                .panel_across = panel_across_.data(),
+               .panels_in_step = most_within_a_step(panel_across_),
                .per_panel = fractions.per_width.data(),
                .disc = disc,
                .disc_radius2 = disc.radius * disc.radius,

@@ -69,7 +69,10 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
         }
     }
     for (std::size_t i = 0; i < surfaces; ++i) {
-        indices_.push_back({.at = table_.data() + i * count});
+        const std::span<const SurfaceIndices<T>> of_surface(table_.data() + i * count, count);
+        indices_.push_back({.at = of_surface.data(), .bends = std::ranges::any_of(of_surface, [](const auto& one) {
+                                                         return one.before != one.after;
+                                                     })});
     }
     add_attenuation();
     add_coatings();

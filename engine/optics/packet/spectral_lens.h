@@ -31,6 +31,7 @@ class SpectralLens {
     /// One surface's numbers, each by wavelength.
     struct Indices {
         const SurfaceIndices<T>* at = nullptr;
+        bool bends = true;                      // at some of the wavelengths: its media differ
         const T* attenuation_before = nullptr;  // null: clear at all of them
         const T* attenuation_after = nullptr;
         /// Of its coating's layers from the scene's side, where none absorbs: of each the index, then the thickness.

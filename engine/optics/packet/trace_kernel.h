@@ -181,7 +181,11 @@ class BlockTracer {
 
     template <bool from_far, bool per_lane>
     void pass_packets(const Here& here) {
-        if constexpr (per_lane) {
+        if (!lens_.indices[here.index].bends) {
+            for (int packet = 0; packet < packets_; ++packet) {
+                pass_opening<from_far, per_lane>(here, packet);
+            }
+        } else if constexpr (per_lane) {
             for (int packet = 0; packet < packets_; ++packet) {
                 pass_packet<from_far, true>(here, packet, media<true>(here.index, packet));
             }
@@ -217,6 +221,29 @@ class BlockTracer {
         add_path(packet, media, distance_moved<from_far>(here, before) + met.distance, going);
         add_depth<per_lane>(here, packet, distance_moved<from_far>(here, before) + met.distance, going);
         add_loss(packet, fresnel(media, met, bent), going);
+    }
+
+    /// Between media of one index, as of a stop: nothing bends, and all that is inside passes. To the bit what
+    /// `pass_packet` does, since the root of a rounded square is what was squared.
+    template <bool from_far, bool per_lane>
+    void pass_opening(const Here& here, int packet) {
+        const Mask going = this->going(packet);
+        if (!any(going)) {
+            return;
+        }
+        const State before = load(packet);
+        const Vec3<Numbers> near = moved_near<from_far>(here, before);
+        const Intersection<Numbers> met = intersect_from_near(near, before.direction, curvature(here), heading());
+        if (!all((met.hit && is_inside(here, met)) || !going)) {
+            pass_with_ends<from_far, per_lane>(here, packet);
+            return;
+        }
+        store(packet, {select(going, met.point, before.origin), before.direction});
+        if constexpr (carry == Carry::all) {
+            add_path(packet, media<per_lane>(here.index, packet), distance_moved<from_far>(here, before) + met.distance,
+                     going);
+        }
+        add_depth<per_lane>(here, packet, distance_moved<from_far>(here, before) + met.distance, going);
     }
 
     static Numbers heading() { return Numbers(kForward ? Scalar(1) : Scalar(-1)); }

@@ -359,7 +359,8 @@ PathTracer::PathTracer(const View& view, Combination combination)
              combination == Combination::weighed ? PathCarry::wavelengths_and_pdfs : PathCarry::wavelengths),
       view_(view),
       is_weighed_(combination == Combination::weighed) {
-    samples_.reserve(kBatch);  // paths that are weighed point into it
+    samples_.reserve(kBatch);
+    drawn_.reserve(is_weighed_ ? kBatch : 0);  // paths point into it
     starts_.reserve(kBatch);
     found_.resize(kBatch);
     if (view.has_features) {
@@ -379,18 +380,17 @@ void PathTracer::operator()(const TileSamples& samples, FilmTile& tile) {
 
 void PathTracer::start(const CameraPathBuffer& paths, std::size_t path, std::size_t pixel) {
     const Ray<double> ray = paths.ray(path);
-    Sample& sample = samples_.emplace_back();
-    sample.pixel = pixel;
-    sample.sample = paths.sample[path];
-    sample.weights = paths.weights[path];
-    sample.hero_weight = paths.hero_weight(path);
+    samples_.push_back({.pixel = pixel,
+                        .sample = paths.sample[path],
+                        .weights = paths.weights[path],
+                        .hero_weight = paths.hero_weight(path)});
     if (is_weighed_) {
-        sample.ray = {.camera = view_.camera, .ray = ray, .pdf = paths.pdf[path]};
+        drawn_.push_back({.camera = view_.camera, .ray = ray, .pdf = paths.pdf[path]});
     }
     starts_.push_back({.ray = view_.camera->to_world(ray),
                        .path = view_.camera->grid().path(paths.wavelength[path]),
                        .numbers = PathSampler(view_.seed, paths.pixel[path], paths.sample[path]),
-                       .drawn = is_weighed_ ? &sample.ray : nullptr,
+                       .drawn = is_weighed_ ? &drawn_.back() : nullptr,
                        .wants_first = view_.has_features});
 }
 
@@ -400,6 +400,7 @@ void PathTracer::add_batch(FilmTile& tile) {
         add(i, tile);
     }
     samples_.clear();
+    drawn_.clear();
     starts_.clear();
 }
 

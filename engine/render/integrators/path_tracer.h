@@ -83,7 +83,6 @@ class PathTracer {
         std::uint32_t sample = 0;
         std::array<float, spectral::kWavelengthsPerPath> weights{};
         float hero_weight = 0.0F;
-        CameraRay ray;  // of one that is weighed
     };
     static constexpr std::size_t kBatch = 512;  // a buffer's paths, so that few are the last ones on their way
 
@@ -94,7 +93,8 @@ class PathTracer {
                       FilmTile& tile) const;
 
     TilePaths paths_;
-    std::vector<Sample> samples_;  // of the batch, as the next two
+    std::vector<Sample> samples_;   // of the batch, as the next three
+    std::vector<CameraRay> drawn_;  // where they are weighed
     std::vector<PathStart> starts_;
     std::vector<PathRadiance> found_;
     std::vector<Vec3d> albedo_weights_;  // a stratum each; none without features
