@@ -359,10 +359,6 @@ PathTracer::PathTracer(const View& view, Combination combination)
              combination == Combination::weighed ? PathCarry::wavelengths_and_pdfs : PathCarry::wavelengths),
       view_(view),
       is_weighed_(combination == Combination::weighed) {
-    samples_.reserve(kBatch);
-    drawn_.reserve(is_weighed_ ? kBatch : 0);  // paths point into it
-    starts_.reserve(kBatch);
-    found_.resize(kBatch);
     if (view.has_features) {
         albedo_weights_ = view.camera->albedo_weights();
     }
@@ -390,11 +386,14 @@ void PathTracer::start(const CameraPathBuffer& paths, std::size_t path, std::siz
     starts_.push_back({.ray = view_.camera->to_world(ray),
                        .path = view_.camera->grid().path(paths.wavelength[path]),
                        .numbers = PathSampler(view_.seed, paths.pixel[path], paths.sample[path]),
-                       .drawn = is_weighed_ ? &drawn_.back() : nullptr,
                        .wants_first = view_.has_features});
 }
 
 void PathTracer::add_batch(FilmTile& tile) {
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+        starts_[i].drawn = &drawn_[i];
+    }
+    found_.resize(starts_.size());
     trace_paths(view_.scene(), view_.paths, starts_, found_);
     for (std::size_t i = 0; i < starts_.size(); ++i) {
         add(i, tile);
