@@ -47,6 +47,7 @@ class SceneBuilder {
         if (lights_.empty() && !own_materials_.empty()) {
             throw InputError("there is no light: expected [[lights]], or a mesh's file with a material that emits");
         }
+        find_uv_readers();
         BuiltScene built{.scene = {.grid = spectra_.grid(),
                                    .geometry = std::make_unique<SceneGeometry>(std::move(shapes_), std::move(objects_)),
                                    .materials = std::move(materials_),
@@ -153,6 +154,17 @@ class SceneBuilder {
         const auto* area = std::get_if<AreaLight>(&lights_.back());
         if (area != nullptr && !shining_objects_.insert(area->object).second) {
             throw InputError("the object shines already, by another light of the file; expected one light an object");
+        }
+    }
+
+    void find_uv_readers() {
+        for (SceneObject& object : objects_) {
+            object.reads_uv = reads_uv(materials_[object.material]);
+        }
+        for (const LightSource& light : lights_) {
+            if (const auto* area = std::get_if<AreaLight>(&light); area != nullptr && area->picture != nullptr) {
+                objects_[area->object].reads_uv = true;
+            }
         }
     }
 

@@ -119,7 +119,8 @@ void describe(const SceneGeometry::Data& data, const Stretch<double>& ray, const
         hit = world_hit(met.place, shape_point(*mesh, nearest.primitive, at.b1, at.b2));
     } else {
         const Stretch<double> local = mapped(met.place.to_local, ray);
-        hit = world_hit(met.place, shape_point(std::get<Sphere>(*met.shape), local.origin + at.at * local.direction));
+        hit = world_hit(met.place, shape_point(std::get<Sphere>(*met.shape), local.origin + at.at * local.direction,
+                                               met.object.reads_uv));
     }
     hit.distance_mm = at.at;
     hit.material = met.object.material;

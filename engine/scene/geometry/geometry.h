@@ -26,6 +26,7 @@ struct SceneObject {
     std::uint32_t shape = 0;  // an index
     AffineMap to_world;
     std::uint32_t material = 0;
+    bool reads_uv = true;  // what it is made of, or its light; else hits on a sphere do not find their uv
 };
 
 /// Where a ray meets a surface. World frame, mm; normals and tangent of unit length.
@@ -35,7 +36,7 @@ struct SurfaceHit {
     Vec3d geometric_normal;  // on the outward side, wherever the ray comes from
     Vec3d shading_normal;    // on the same side, interpolated between a mesh's vertices
     Vec3d tangent;           // along +u, at right angles to the shading normal
-    Vec2d uv;                // as `shapes.h` says; of a mesh without uvs, two barycentric coordinates
+    Vec2d uv;  // as `shapes.h` says; of a mesh without uvs, two barycentric coordinates; (0, 0) where none is wanted
     std::uint32_t material = 0;
     std::uint32_t object = 0;
     std::uint32_t primitive = 0;  // the triangle of a mesh, else 0

@@ -32,6 +32,14 @@ Vec3d u_direction(const std::array<Vec3d, 3>& p, const std::array<Vec2<float>, 3
     return area == 0.0 || !(dot(along, along) > 0.0) ? p[1] - p[0] : std::copysign(1.0, area) * along;
 }
 
+/// Longitude and latitude of a direction from the centre.
+Vec2d uv_on_sphere(const Vec3d& n) {
+    const double turn = turns_of(n.x, n.y);
+    // From the pole's distance as well: an arc sine alone loses half its digits there.
+    const double elevation = 2.0 * turns_of(std::sqrt(n.x * n.x + n.y * n.y), n.z);
+    return {turn < 0.0 ? turn + 1.0 : turn, 0.5 + elevation};
+}
+
 }  // namespace
 
 std::optional<Meeting<double>> meet(const TriangleSides& triangle, double float_b1, double float_b2, double near,
@@ -98,16 +106,13 @@ ShapePoint shape_point(const TriangleMesh& mesh, std::uint32_t triangle, double 
     return at;
 }
 
-ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards) {
+ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards, bool wants_uv) {
     const Vec3d n = normalized(towards);
-    const double turn = turns_of(n.x, n.y);
-    // From the pole's distance as well: an arc sine alone loses half its digits there.
-    const double elevation = 2.0 * turns_of(std::sqrt(n.x * n.x + n.y * n.y), n.z);
     return {.point = sphere.radius_mm * n,
             .geometric_normal = n,
             .shading_normal = n,
             .tangent = tangent_along({-n.y, n.x, 0.0}, n),
-            .uv = {turn < 0.0 ? turn + 1.0 : turn, 0.5 + elevation}};
+            .uv = wants_uv ? uv_on_sphere(n) : Vec2d{}};
 }
 
 ShapePoint shape_point(const Quad& quad, double x, double y) {

@@ -36,8 +36,8 @@ struct ShapePoint {
 };
 
 ShapePoint shape_point(const TriangleMesh& mesh, std::uint32_t triangle, double b1, double b2);
-/// `towards` is any point but the centre: its radius leads to the one meant.
-ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards);
+/// `towards` is any point but the centre: its radius leads to the one meant. uv is (0, 0) unless it is wanted.
+ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards, bool wants_uv);
 /// (x, y) on the quad, mm.
 ShapePoint shape_point(const Quad& quad, double x, double y);
 

@@ -65,7 +65,8 @@ SurfaceSampler::SurfaceSampler(const SceneGeometry& scene, std::uint32_t object)
 SurfaceSample SurfaceSampler::sample(double u1, double u2) const {
     const PlacedObject& placed = scene_->data().objects[object_];
     if (std::holds_alternative<Sphere>(*placed.shape)) {
-        return drawn(world_hit(placed.place, shape_point(std::get<Sphere>(*placed.shape), sphere_direction(u1, u2))));
+        return drawn(world_hit(placed.place, shape_point(std::get<Sphere>(*placed.shape), sphere_direction(u1, u2),
+                                                         placed.object.reads_uv)));
     }
     if (std::holds_alternative<Quad>(*placed.shape)) {
         return drawn(placed.facets.front(), u1, u2);

@@ -20,6 +20,10 @@ struct ConductorMaterial {
 /// A metal of index n + ik (at_midpoints of ComplexIndex, say) on the grid, polished where `roughness` is {}.
 ConductorMaterial conductor_material(spectral::GridSpectrum n, spectral::GridSpectrum k, const Roughness& roughness);
 
+inline bool reads_uv(const ConductorMaterial& /*even*/) {
+    return false;
+}
+
 ConductorBsdf at_point(const ConductorMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 
 struct ConductorDescription {

@@ -28,6 +28,10 @@ inline DielectricMaterial dielectric_material(spectral::GridSpectrum eta, const 
     return material;
 }
 
+inline bool reads_uv(const DielectricMaterial& /*even*/) {
+    return false;
+}
+
 inline DielectricBsdf at_point(const DielectricMaterial& material, const Vec2d&,
                                const spectral::PathWavelengths& path) {
     return {.eta = material.eta(path), .roughness = material.roughness, .losses = material.losses.get()};

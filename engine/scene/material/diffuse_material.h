@@ -9,6 +9,10 @@ struct DiffuseMaterial {
     Texture albedo;  // in [0, 1]
 };
 
+inline bool reads_uv(const DiffuseMaterial& material) {
+    return varies(material.albedo);
+}
+
 inline DiffuseBsdf at_point(const DiffuseMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
     return {.albedo = value_at(material.albedo, uv, path)};
 }

@@ -12,6 +12,9 @@ struct Material {
     std::variant<SimpleMaterial, MixMaterial, MetallicMaterial> surface;
 };
 
+/// Whether how it scatters depends on texture coordinates; else no hit needs to find them.
+bool reads_uv(const Material& material);
+
 /// How the material scatters at texture coordinates `uv`, at a path's wavelengths. The material must outlive it.
 Bsdf bsdf_at(const Material& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 

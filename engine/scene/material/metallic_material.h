@@ -81,6 +81,11 @@ struct MetallicMaterial {
 /// Finds `facets` and `metal_means`.
 void prepare(MetallicMaterial& material);
 
+/// Even ones too: it is meshes' own, whose hits have their uvs for nothing.
+inline bool reads_uv(const MetallicMaterial& /*whatever*/) {
+    return true;
+}
+
 MixBsdf at_point(const MetallicMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 
 }  // namespace lensproof::scene

@@ -1,5 +1,6 @@
 // engine/scene/material/mix_material.h — materials side by side.
 #pragma once
+#include <algorithm>
 #include <variant>
 #include <vector>
 
@@ -25,6 +26,12 @@ struct MixMaterial {
 /// `fraction` (0 to 1) of `second`, the rest of `first`; both may be mixes themselves.
 /// Throws InputError where more than kMostMixed materials come together.
 MixMaterial mixed(const Material& first, const Material& second, double fraction);
+
+inline bool reads_uv(const MixMaterial& material) {
+    return std::ranges::any_of(material.parts, [](const MixMaterial::Part& part) {
+        return std::visit([](const auto& simple) { return reads_uv(simple); }, part.material);
+    });
+}
 
 MixBsdf at_point(const MixMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 

@@ -20,6 +20,10 @@ inline PlasticMaterial plastic_material(Texture albedo, double eta, double alpha
     return {.albedo = std::move(albedo), .coat = std::make_shared<DielectricCoat>(eta, alpha)};
 }
 
+inline bool reads_uv(const PlasticMaterial& material) {
+    return varies(material.albedo);
+}
+
 inline PlasticBsdf at_point(const PlasticMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
     return plastic_bsdf(value_at(material.albedo, uv, path), *material.coat);
 }

@@ -84,6 +84,9 @@ class Texture {
 
     friend spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv,
                                              const spectral::PathWavelengths& path);
+    friend bool varies(const Texture& texture) {
+        return !std::holds_alternative<spectral::GridSpectrum>(texture.kind_);
+    }
 
   private:
     std::variant<spectral::GridSpectrum, ImageTexture, ChartTexture> kind_;

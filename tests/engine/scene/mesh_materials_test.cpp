@@ -122,6 +122,35 @@ TEST_F(MeshMaterialsTest, SurfacesAreWhatTheirFileSays) {
     EXPECT_NEAR(normal_albedo(at_x(made.scene, 2500.0))[0], 1.0, 2e-4);
 }
 
+// Of the scene file's own materials those with a picture need to know where on a sphere they are.
+TEST_F(MeshMaterialsTest, SpheresFindTheirUvForPicturesAlone) {
+    write("picture.png", two_pixels(kLeft, kRight));
+    const BuiltScene made = built(kScene + R"(
+[[objects]]
+name = "even"
+shape = "sphere"
+radius_mm = 10.0
+material = "even"
+[[objects]]
+name = "painted"
+shape = "sphere"
+radius_mm = 10.0
+material = "painted"
+[[materials]]
+name = "even"
+kind = "diffuse"
+reflectance = 0.5
+[[materials]]
+name = "painted"
+kind = "plastic"
+reflectance = { image = "picture.png" }
+)");
+    const SceneGeometry& geometry = *made.scene.geometry;
+    const auto objects = static_cast<std::uint32_t>(geometry.object_count());
+    EXPECT_FALSE(geometry.object(objects - 2).reads_uv);
+    EXPECT_TRUE(geometry.object(objects - 1).reads_uv);
+}
+
 // Inside the glass half of the light is left after 2 m; and it shines with 30 times (1, 1, 1) in cd/m², or as many
 // times that as the scene says.
 TEST_F(MeshMaterialsTest, LightIsWhatTheFileSays) {

@@ -127,6 +127,21 @@ TEST(SceneGeometry, CoordinatesOnSurfacesRunAsStated) {
     }
 }
 
+// What a sphere is made of may have no use for its uv: then a hit has none, and is the same otherwise.
+TEST(SceneGeometry, ASphereWhoseUvIsNotReadHasNone) {
+    const SceneGeometry read({Sphere{2.0}}, {{.shape = 0}});
+    const SceneGeometry unread({Sphere{2.0}}, {{.shape = 0, .reads_uv = false}});
+    const Vec3d from{3.0, 4.0, 5.0};
+    const auto expected = intersect(read, from, normalized(-1.0 * from), 0.0, kInfinity);
+    const auto hit = intersect(unread, from, normalized(-1.0 * from), 0.0, kInfinity);
+    ASSERT_TRUE(expected && hit);
+    EXPECT_NE(expected->uv, Vec2d());
+    EXPECT_EQ(hit->uv, Vec2d());
+    EXPECT_EQ(hit->point, expected->point);
+    EXPECT_EQ(hit->shading_normal, expected->shading_normal);
+    EXPECT_EQ(hit->tangent, expected->tangent);
+}
+
 // uvs that are an affine function of the place: every hit has that function's value, and +u is its gradient.
 TEST(SceneGeometry, AMeshHasTheUvsAndNormalsOfItsVertices) {
     TriangleMesh mesh{.name = "roof",

@@ -43,6 +43,18 @@ TEST(Material, ScattersAsItsTablesSayThere) {
     EXPECT_EQ(std::get<PlasticBsdf>(bsdf_at(plastic, kMiddle, path)).base, spectral::SpectralSample(1.0F));
 }
 
+// Only what varies over the surface asks where on it.
+TEST(Material, ReadsUvWhereItsTextureVaries) {
+    const Material picture{DiffuseMaterial{.albedo = ImageTexture{}}};
+    EXPECT_TRUE(reads_uv(picture));
+    EXPECT_TRUE(reads_uv({plastic_material(ImageTexture{}, 1.5, 0.0)}));
+    EXPECT_TRUE(reads_uv({mixed(diffuse(0.5), picture, 0.5)}));
+    EXPECT_FALSE(reads_uv(diffuse(0.5)));
+    EXPECT_FALSE(reads_uv({plastic_material(spectral::constant_spectrum(1.0, grid()), 1.5, 0.0)}));
+    EXPECT_FALSE(reads_uv({mixed(diffuse(0.5), diffuse(0.2), 0.5)}));
+    EXPECT_FALSE(reads_uv({dielectric_material(spectral::constant_spectrum(1.5, grid()), {})}));
+}
+
 // Of mixes of mixes each material has its fraction of its fraction, and all of them make one: Lambertian surfaces of
 // albedo 0, 0.2, 0.5, 1 mixed by 0.25, 0.6 and 0.5 look like one of the mean albedo, here by hand.
 TEST(Material, MixesShareTheSurface) {
