@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/disc.h"
+
 namespace lensproof::render {
 
 namespace {
@@ -12,11 +14,30 @@ double pupil_area(const GaussianOptics& optics) {
     return std::numbers::pi * optics.pupil_radius_mm * optics.pupil_radius_mm;
 }
 
+/// Of the disc that paths cross.
+double crossed_radius(const GaussianOptics& optics) {
+    return optics.is_pinhole ? 0.0 : optics.pupil_radius_mm;
+}
+
 /// The pupil's point that (u, v) in the unit square maps to.
 Vec2d pupil_point(const GaussianOptics& optics, double u, double v) {
-    const double radius = optics.is_pinhole ? 0.0 : optics.pupil_radius_mm * std::sqrt(u);
-    const double angle = 2.0 * std::numbers::pi * v;
-    return {radius * std::cos(angle), radius * std::sin(angle)};
+    return warped_onto_disc(crossed_radius(optics), u, v);
+}
+
+IdealOpticsColumns in_columns(const std::vector<GaussianOptics>& at) {
+    IdealOpticsColumns columns;
+    for (const GaussianOptics& optics : at) {
+        columns.to_pupil_z.push_back(optics.pupil_z - optics.film_z);
+        columns.pupil_radius.push_back(crossed_radius(optics));
+        columns.pupil_area.push_back(pupil_area(optics));
+        columns.object_z.push_back(optics.object_z);
+        columns.h_h.push_back(optics.h_h);
+        columns.h_s.push_back(optics.h_s);
+        columns.s_h.push_back(optics.s_h);
+        columns.s_s.push_back(optics.s_s);
+        columns.transmittance.push_back(optics.transmittance);
+    }
+    return columns;
 }
 
 double determinant(const GaussianOptics& optics) {
@@ -96,6 +117,9 @@ IdealCamera::Paths::Paths(const IdealCamera& camera, const FilmSampling& film, c
                           PathCarry carry)
     : samples_(film, static_cast<int>(camera.at_.size())),
       camera_(&camera),
+      optics_(in_columns(camera.at_)),
+      kernels_(&path_kernels({})),
+      rays_(kPathChunk),
       sensor_(film.sensor),
       grid_(grid),
       carry_(carry),
@@ -105,42 +129,30 @@ IdealCamera::Paths::Paths(const IdealCamera& camera, const FilmSampling& film, c
       })) {}
 
 bool IdealCamera::Paths::fill(CameraPathBuffer& buffer) {
-    const bool is_filled = samples_.fill(buffer, [&](const PathStarts& starts) {
-        for (int i = 0; i < starts.size; ++i) {
-            append(starts, static_cast<std::size_t>(i), buffer);
-        }
+    const bool is_filled = samples_.fill(buffer, [&](PathStarts& starts) {
+        kernels_->leave_ideal_camera(optics_, starts, rays_);
+        const auto append = [&](const auto& from, auto& to) {
+            std::copy_n(from.begin(), starts.size, to.begin() + buffer.size);
+        };
+        append(starts.pixel, buffer.pixel);
+        append(starts.sample, buffer.sample);
+        append(starts.wavelength, buffer.wavelength);
+        append(starts.film_x, buffer.film_x);
+        append(starts.film_y, buffer.film_y);
+        append(starts.weight, buffer.weight);
+        append(rays_.origin.x, buffer.origin.x);
+        append(rays_.origin.y, buffer.origin.y);
+        append(rays_.origin.z, buffer.origin.z);
+        append(rays_.direction.x, buffer.direction.x);
+        append(rays_.direction.y, buffer.direction.y);
+        append(rays_.direction.z, buffer.direction.z);
+        buffer.size += starts.size;
         started_ += starts.size;
     });
     if (carry_ != PathCarry::hero) {
         weigh(buffer);
     }
     return is_filled;
-}
-
-void IdealCamera::Paths::append(const PathStarts& starts, std::size_t sample, CameraPathBuffer& buffer) const {
-    const GaussianOptics& optics = camera_->at_[starts.wavelength[sample]];
-    const Vec2d h = pupil_point(optics, starts.pupil_u[sample], starts.pupil_v[sample]);
-    const double z = optics.pupil_z - optics.film_z;
-    const Vec3d to_pupil{h.x - starts.film_x[sample], h.y - starts.film_y[sample], z};
-    const Vec2d s{to_pupil.x / z, to_pupil.y / z};
-    const double distance2 = dot(to_pupil, to_pupil);
-    const Vec3d direction =
-        normalized(Vec3d{-(optics.s_h * h.x + optics.s_s * s.x), -(optics.s_h * h.y + optics.s_s * s.y), -1.0});
-
-    const auto at = static_cast<std::size_t>(buffer.size++);
-    buffer.pixel[at] = starts.pixel[sample];
-    buffer.sample[at] = starts.sample[sample];
-    buffer.wavelength[at] = starts.wavelength[sample];
-    buffer.film_x[at] = starts.film_x[sample];
-    buffer.film_y[at] = starts.film_y[sample];
-    buffer.weight[at] =
-        optics.transmittance * z * z / (distance2 * distance2) * pupil_area(optics) * starts.filter_weight[sample];
-    buffer.origin.x[at] = optics.h_h * h.x + optics.h_s * s.x;
-    buffer.origin.y[at] = optics.h_h * h.y + optics.h_s * s.y;
-    buffer.origin.z[at] = optics.object_z;
-    buffer.direction.x[at] = direction.x;
-    buffer.direction.y[at] = direction.y;
-    buffer.direction.z[at] = direction.z;
 }
 
 /// A path's weight is its hero's; the others pass the camera by their own transmittance.

@@ -33,11 +33,13 @@ class IdealCamera {
         [[nodiscard]] std::int64_t started() const { return started_; }
 
       private:
-        void append(const PathStarts& starts, std::size_t sample, CameraPathBuffer& buffer) const;
         void weigh(CameraPathBuffer& buffer) const;
 
         FilmSamples samples_;
         const IdealCamera* camera_;
+        IdealOpticsColumns optics_;
+        const PathKernels* kernels_;
+        optics::RayBatch<double> rays_;  // of the samples at hand
         std::int64_t started_ = 0;
         Sensor sensor_;
         spectral::SpectralGrid grid_;

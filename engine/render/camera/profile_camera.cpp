@@ -7,6 +7,7 @@
 
 #include "engine/base/angle.h"
 #include "engine/base/bytes.h"
+#include "engine/base/disc.h"
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 
@@ -19,13 +20,6 @@ constexpr double kEdge = 1.0 + 1e-9;
 
 double square(double x) {
     return x * x;
-}
-
-/// The point of the unit disc that (u, v) in the unit square maps to.
-Vec2d in_unit_disc(double u, double v) {
-    const double radius = std::sqrt(u);
-    const double angle = 2.0 * kPi * v;
-    return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
 }  // namespace
@@ -198,7 +192,7 @@ void ProfileCamera::Paths::append(const PathStarts& starts, std::size_t sample, 
                     .offset = {}};
     const Chief& chief = meeting.chief;
     if (!camera_->opening_.is_pinhole) {
-        const Vec2d in_disc = in_unit_disc(starts.pupil_u[sample], starts.pupil_v[sample]);
+        const Vec2d in_disc = warped_onto_disc(1.0, starts.pupil_u[sample], starts.pupil_v[sample]);
         const double area = camera_->pupil_area(wavelength, radius, angle.slope, chief.sine, illumination);
         const Vec2d axes = camera_->semi_axes(wavelength, area);
         meeting.offset = {axes.x * cross(chief.azimuth, in_disc), axes.y * dot(chief.azimuth, in_disc)};
@@ -308,7 +302,7 @@ std::optional<LensSample> ProfileCamera::sample(const LightOrigin& from, const s
         return std::nullopt;
     }
     const Disc disc = disc_of(from, *chief);
-    const Vec2d offset = disc.radius * in_unit_disc(u, v);
+    const Vec2d offset = warped_onto_disc(disc.radius, u, v);
     const Vec3d in_pupil = chief->centre() + chief->across(offset);
     const Vec3d outwards = from.is_far ? -1.0 * from.at : normalized(from.at - in_pupil);
     const Vec3d start = in_pupil + lead_mm_ * outwards;

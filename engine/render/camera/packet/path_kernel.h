@@ -106,6 +106,30 @@ template <class Abi>
     rays.size = starts.size;
 }
 
+template <class Abi>
+[[gnu::flatten]] void leave_ideal_camera(const IdealOpticsColumns& optics, PathStarts& starts,
+                                         optics::RayBatch<double>& rays) {
+    using Numbers = Pack<double, Abi>;
+    for (int i = 0; i < starts.size; i += Numbers::kLanes) {
+        const auto of = [&](const std::vector<double>& column) {
+            return Numbers::gather(column.data(), starts.wavelength.data() + i);
+        };
+        const auto [ray, weight] = ideal_path<Numbers>(
+            {of(optics.to_pupil_z), of(optics.pupil_radius), of(optics.pupil_area), of(optics.object_z), of(optics.h_h),
+             of(optics.h_s), of(optics.s_h), of(optics.s_s), of(optics.transmittance)},
+            {Numbers::load(starts.film_x.data() + i), Numbers::load(starts.film_y.data() + i)},
+            Numbers::load(starts.pupil_u.data() + i), Numbers::load(starts.pupil_v.data() + i));
+        (weight * Numbers::load(starts.filter_weight.data() + i)).store(starts.weight.data() + i);
+        ray.origin.x.store(rays.origin.x.data() + i);
+        ray.origin.y.store(rays.origin.y.data() + i);
+        ray.origin.z.store(rays.origin.z.data() + i);
+        ray.direction.x.store(rays.direction.x.data() + i);
+        ray.direction.y.store(rays.direction.y.data() + i);
+        ray.direction.z.store(rays.direction.z.data() + i);
+    }
+    rays.size = starts.size;
+}
+
 template <class Abi, class T>
 [[gnu::flatten]] void cross_film_with(double film_z, double pupil_z, const optics::RayBatch<T>& behind,
                                       FilmMeetings& meetings) {
@@ -175,6 +199,7 @@ PathKernels path_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
     return {.draw_samples = draw_samples<Abi>,
             .draw_pupil_points = draw_pupil_points<Abi>,
             .aim_rays = aim_rays<Abi>,
+            .leave_ideal_camera = leave_ideal_camera<Abi>,
             .cross_film = cross_film_with<Abi, double>,
             .cross_film_in_float = cross_film_with<Abi, float>,
             .weigh_pupil_points = weigh_pupil_points<Abi>,

@@ -6,6 +6,7 @@
 
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_slice.h"
+#include "engine/render/camera/packet/ideal_path.h"
 #include "engine/render/camera/packet/path_chunk.h"
 #include "engine/render/camera/packet/shared_chunk.h"
 
@@ -21,6 +22,9 @@ struct PathKernels {
 
     /// From film and pupil points the rays and their etendue.
     void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<double>& rays);
+
+    /// From film points and numbers for the pupil the rays out of an ideal camera, and their weights.
+    void (*leave_ideal_camera)(const IdealOpticsColumns& optics, PathStarts& starts, optics::RayBatch<double>& rays);
 
     /// Where rays behind the lens cross film and pupil.
     void (*cross_film)(double film_z, double pupil_z, const optics::RayBatch<double>& behind, FilmMeetings& meetings);
