@@ -20,6 +20,14 @@ struct SampledLight {
     bool is_hero_alone = false;
 };
 
+/// For a surface that a path has met: the next set of its sampler's, and the set after for lights.
+struct SurfaceNumbers {
+    scene::BsdfNumbers bsdf;
+    double roulette = 0.0;
+    double of_light = 0.0;
+    Vec2d of_light_point;
+};
+
 /// A path on its way, between one question to the scene's geometry and the next.
 class PathWalk {
   public:
@@ -35,13 +43,13 @@ class PathWalk {
     void leave_at(const scene::MapPlace& place) { ahead_ = place; }
 
     [[nodiscard]] PathSampler& sampler() { return start_->numbers; }
-    using Numbers = std::span<const double, NumberColumns::kNumbers>;
-    /// Takes the numbers for a surface that the ray has met: the next set of its sampler's with the direction that
-    /// they draw of a matt one, and the set after for lights, of which it returns where they lie.
-    scene::LightNumbers* take_numbers(Numbers numbers, const Vec3d& matt, Numbers for_lights) {
-        numbers_ = {numbers[0], numbers[1], numbers[2], matt};
-        roulette_ = numbers[3];
-        light_numbers_ = {for_lights[0], {for_lights[1], for_lights[2]}};
+    /// Returns where those for lights lie.
+    scene::LightNumbers* take_numbers(const SurfaceNumbers& numbers) {
+        numbers_ = numbers.bsdf;
+        roulette_ = numbers.roulette;
+        light_numbers_.of_light = numbers.of_light;
+        light_numbers_.of_point = numbers.of_light_point;
+        light_numbers_.ahead = {};
         return &light_numbers_;
     }
 
@@ -222,11 +230,13 @@ void give_numbers(const scene::Lights& lights, std::span<PathWalk* const> walks,
     NumberColumns columns;
     std::array<PathWalk*, kWalks> arrived{};
     std::array<scene::LightNumbers*, kWalks> for_lights{};
+    std::array<Vec3d, kWalks> points;
     for (std::size_t first = 0; first < walks.size(); first += kWalks) {
         const std::size_t end = std::min(walks.size(), first + kWalks);
         std::size_t count = 0;
         for (std::size_t i = first; i < end; ++i) {
             if (hits[i]) {
+                points[count] = hits[i]->point;
                 arrived[count++] = walks[i];
             }
         }
@@ -239,11 +249,15 @@ void give_numbers(const scene::Lights& lights, std::span<PathWalk* const> walks,
         }
         number_kernels().draw(columns);
         for (std::size_t k = 0; k < count; ++k) {
+            const auto& [u0, u1, u2, u3] = columns.number;
+            const std::size_t after = count + k;
             arrived[k]->sampler().skip();
-            for_lights[k] =
-                arrived[k]->take_numbers(columns.numbers(k), columns.matt_direction(k), columns.numbers(count + k));
+            for_lights[k] = arrived[k]->take_numbers({.bsdf = {u0[k], u1[k], u2[k], columns.matt_direction(k)},
+                                                      .roulette = u3[k],
+                                                      .of_light = u0[after],
+                                                      .of_light_point = {u1[after], u2[after]}});
         }
-        lights.draw_ahead(std::span(for_lights).first(count));
+        lights.draw_ahead(std::span(points).first(count), std::span(for_lights).first(count));
     }
 }
 
@@ -338,11 +352,12 @@ PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const
         const auto [origin, direction] = walk.ray();
         const auto hit = scene::intersect(*scene.geometry, origin, direction, 0.0, kInfinity);
         if (hit) {
-            const auto numbers_here = walk.sampler().next();
-            const auto for_lights = walk.sampler().peek();
-            walk.take_numbers(std::span(numbers_here).first<NumberColumns::kNumbers>(),
-                              cosine_direction(numbers_here[1], numbers_here[2]),
-                              std::span(for_lights).first<NumberColumns::kNumbers>());
+            const auto u = walk.sampler().next();
+            const auto after = walk.sampler().peek();
+            walk.take_numbers({.bsdf = {u[0], u[1], u[2], cosine_direction(u[1], u[2])},
+                               .roulette = u[3],
+                               .of_light = after[0],
+                               .of_light_point = {after[1], after[2]}});
         }
         is_going = walk.arrive(hit);
         const scene::Segment* segment = walk.to_light();

@@ -6,6 +6,7 @@
 
 #include "engine/base/angle.h"
 #include "engine/scene/geometry/geometry_data.h"
+#include "engine/scene/geometry/packet/triangle_place.h"
 
 namespace lensproof::scene {
 
@@ -24,17 +25,9 @@ double area_stretch(const Matrix3& linear, const Vec3d& world_normal) {
     return std::abs(determinant(linear)) / length(transposed_times(linear, world_normal));
 }
 
-/// The first of rising numbers that is larger; a few are counted, since no branch of a search can be foreseen.
-std::vector<double>::const_iterator first_beyond(const std::vector<double>& rising, double number) {
-    constexpr std::size_t kFew = 16;
-    if (rising.size() > kFew) {
-        return std::ranges::upper_bound(rising, number);
-    }
-    std::ptrdiff_t not_beyond = 0;
-    for (const double one : rising) {
-        not_beyond += one <= number ? 1 : 0;
-    }
-    return rising.begin() + not_beyond;
+TrianglePlace<double> place_on_many_triangles(const std::vector<double>& areas_to, double sought, double u2) {
+    const auto beyond = std::ranges::upper_bound(areas_to.begin() + 1, areas_to.end() - 1, sought);
+    return place_on_triangle(areas_to.data(), static_cast<double>(beyond - (areas_to.begin() + 1)), sought, u2);
 }
 
 Vec3d sphere_direction(double u1, double u2) {
@@ -54,12 +47,14 @@ SurfaceSampler::SurfaceSampler(const SceneGeometry& scene, std::uint32_t object)
         area_mm2_ = quad->width_mm * quad->height_mm * length(cross(m * Vec3d{1, 0, 0}, m * Vec3d{0, 1, 0}));
     } else {
         const auto& mesh = std::get<TriangleMesh>(*placed.shape);
+        areas_to_mm2_.push_back(0.0);
         for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
             const std::array<Vec3d, 3> p = corners(mesh, i);
             area_mm2_ += 0.5 * length(cross(m * (p[1] - p[0]), m * (p[2] - p[0])));
             areas_to_mm2_.push_back(area_mm2_);
         }
     }
+    even_pdf_ = 1.0 / area_mm2_;
 }
 
 SurfaceSample SurfaceSampler::sample(double u1, double u2) const {
@@ -72,16 +67,20 @@ SurfaceSample SurfaceSampler::sample(double u1, double u2) const {
         return drawn(placed.facets.front(), u1, u2);
     }
     const double sought = u1 * area_mm2_;
-    const auto chosen = std::min(first_beyond(areas_to_mm2_, sought), areas_to_mm2_.end() - 1);
-    const double before = chosen == areas_to_mm2_.begin() ? 0.0 : *(chosen - 1);
-    const double root = std::sqrt(std::clamp((sought - before) / (*chosen - before), 0.0, 1.0));
-    const auto triangle = static_cast<std::uint32_t>(chosen - areas_to_mm2_.begin());
-    SurfaceSample sample = placed.facets.empty()
-                               ? drawn(world_hit(placed.place, shape_point(std::get<TriangleMesh>(*placed.shape),
-                                                                           triangle, root * (1.0 - u2), root * u2)))
-                               : drawn(placed.facets[triangle], root * (1.0 - u2), root * u2);
+    const std::size_t count = areas_to_mm2_.size() - 1;
+    const auto [which, b1, b2] = count <= kFewTriangles
+                                     ? place_on_few_triangles(areas_to_mm2_.data(), count, sought, u2)
+                                     : place_on_many_triangles(areas_to_mm2_, sought, u2);
+    const auto triangle = static_cast<std::uint32_t>(which);
+    const auto& mesh = std::get<TriangleMesh>(*placed.shape);
+    SurfaceSample sample = placed.facets.empty() ? drawn(world_hit(placed.place, shape_point(mesh, triangle, b1, b2)))
+                                                 : drawn(placed.facets[triangle], b1, b2);
     sample.primitive = triangle;
     return sample;
+}
+
+std::span<const Facet> SurfaceSampler::facets() const {
+    return scene_->data().objects[object_].facets;
 }
 
 SurfaceSample SurfaceSampler::drawn(const SurfaceHit& hit) const {
@@ -96,7 +95,7 @@ SurfaceSample SurfaceSampler::drawn(const Facet& facet, double a, double b) cons
     return {.point = facet.point(a, b),
             .geometric_normal = facet.normal,
             .uv = facet.uv_at(a, b),
-            .pdf_per_mm2 = 1.0 / area_mm2_,
+            .pdf_per_mm2 = even_pdf_,
             .error_mm = facet.error_mm};
 }
 
@@ -106,7 +105,7 @@ double SurfaceSampler::pdf_per_mm2(const SurfaceHit& hit) const {
         const double stretch = area_stretch(placed.place.to_world.linear, hit.geometric_normal);
         return 1.0 / (4.0 * kPi * sphere->radius_mm * sphere->radius_mm * stretch);
     }
-    return 1.0 / area_mm2_;
+    return even_pdf_;
 }
 
 }  // namespace lensproof::scene

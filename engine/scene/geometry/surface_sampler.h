@@ -1,6 +1,7 @@
 // engine/scene/geometry/surface_sampler.h — points drawn on an object's surface, as lights need them.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/scene/geometry/geometry.h"
@@ -33,14 +34,20 @@ class SurfaceSampler {
     [[nodiscard]] double pdf_per_mm2(const SurfaceHit& hit) const;
     [[nodiscard]] double area_mm2() const { return area_mm2_; }
 
+    /// Of a quad its one piece, of a mesh its triangles where they are kept; else none.
+    [[nodiscard]] std::span<const Facet> facets() const;
+    /// Of a mesh, as `place_on_triangle` has them; else none.
+    [[nodiscard]] std::span<const double> areas_to_mm2() const { return areas_to_mm2_; }
+
   private:
     [[nodiscard]] SurfaceSample drawn(const SurfaceHit& hit) const;
     [[nodiscard]] SurfaceSample drawn(const Facet& facet, double a, double b) const;
 
     const SceneGeometry* scene_;
     std::uint32_t object_;
-    std::vector<double> areas_to_mm2_;  // of a mesh: the summed areas up to and with each triangle
+    std::vector<double> areas_to_mm2_;
     double area_mm2_ = 0.0;
+    double even_pdf_ = 0.0;  // 1 over it
 };
 
 }  // namespace lensproof::scene

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/base/basis.h"
+#include "engine/scene/geometry/facet.h"
+#include "engine/scene/light/packet/facet_kernels.h"
 
 namespace lensproof::scene {
 
@@ -20,7 +22,27 @@ double one_minus_cosine(double radius_mm, double distance2) {
 }  // namespace
 
 ShiningSurface::ShiningSurface(const SceneGeometry& scene, const AreaLight& light)
-    : sampler_(scene, light.object), ball_(ball_of(scene, light)) {}
+    : sampler_(scene, light.object),
+      facets_(light.picture == nullptr ? facets_of(sampler_) : ShiningFacets()),
+      ball_(ball_of(scene, light)) {}
+
+ShiningFacets ShiningSurface::facets_of(const SurfaceSampler& sampler) {
+    const std::span<const Facet> facets = sampler.facets();
+    if (facets.empty() || facets.size() > kFewTriangles) {
+        return {};
+    }
+    ShiningFacets shining{.is_quad = sampler.areas_to_mm2().empty(),
+                          .areas_to_mm2 = {sampler.areas_to_mm2().begin(), sampler.areas_to_mm2().end()},
+                          .pdf_per_mm2 = 1.0 / sampler.area_mm2()};
+    for (const Facet& facet : facets) {
+        shining.first.push_back(facet.sides.first);
+        shining.to_second.push_back(facet.sides.to_second);
+        shining.to_third.push_back(facet.sides.to_third);
+        shining.normal.push_back(facet.normal);
+        shining.error_mm.push_back(facet.error_mm);
+    }
+    return shining;
+}
 
 std::optional<ShiningSurface::Ball> ShiningSurface::ball_of(const SceneGeometry& scene, const AreaLight& light) {
     const auto* sphere = std::get_if<Sphere>(&scene.shape(light.object));
@@ -57,7 +79,9 @@ double ShiningSurface::power(const AreaLight& light) const {
 }
 
 std::optional<LightSample> ShiningSurface::sample(const AreaLight& light, const Vec3d& point,
-                                                  const spectral::PathWavelengths& path, double u1, double u2) const {
+                                                  const spectral::PathWavelengths& path,
+                                                  const LightNumbers& numbers) const {
+    const auto& [u1, u2] = numbers.of_point;
     if (is_seen_as_cone(point)) {
         const Vec3d to_centre = ball_->centre - point;
         const double down = one_minus_cosine(ball_->radius_mm, dot(to_centre, to_centre));
@@ -75,21 +99,36 @@ std::optional<LightSample> ShiningSurface::sample(const AreaLight& light, const 
                            .pdf = pdf,
                            .leaving_per_sample = light.leaving_pdf(1.0 / sampler_.area_mm2()) / pdf};
     }
-    const SurfaceSample on_light = sampler_.sample(u1, u2);
-    const Vec3d to_light = on_light.point - point;
-    const double distance2 = dot(to_light, to_light);
-    const Vec3d direction = normalized(to_light);
-    const double cosine = -dot(on_light.geometric_normal, direction);
-    if (!(distance2 > 0.0) || cosine == 0.0 || (cosine < 0.0 && !light.is_two_sided)) {
-        return {};
+    const auto seen = [&](const ShiningView<double>& view, double pdf_per_mm2, const Vec2d& uv) {
+        const bool is_lit = view.cosine > 0.0 || (view.cosine < 0.0 && light.is_two_sided);
+        return is_lit ? std::optional(LightSample{.direction = view.direction,
+                                                  .end = view.end,
+                                                  .value = scaled(light.radiance_at(uv, path), view.per_pdf),
+                                                  .pdf = view.pdf,
+                                                  .leaving_per_sample = light.leaving_pdf(pdf_per_mm2) * view.per_pdf})
+                      : std::nullopt;
+    };
+    const auto* ahead = std::get_if<SurfaceDraw>(&numbers.ahead);
+    if (ahead != nullptr && ahead->surface == this) {
+        return seen(ahead->view, facets_.pdf_per_mm2, {});
     }
-    const double pdf = on_light.pdf_per_mm2 * distance2 / std::abs(cosine);
-    return LightSample{
-        .direction = direction,
-        .end = ray_origin(on_light.point, on_light.geometric_normal, on_light.error_mm, -1.0 * direction),
-        .value = scaled(light.radiance_at(on_light.uv, path), 1.0 / pdf),
-        .pdf = pdf,
-        .leaving_per_sample = light.leaving_pdf(on_light.pdf_per_mm2) / pdf};
+    const SurfaceSample drawn = sampler_.sample(u1, u2);
+    return seen(seen_from<double>(point, {drawn.point, drawn.geometric_normal, drawn.error_mm, drawn.pdf_per_mm2}),
+                drawn.pdf_per_mm2, drawn.uv);
+}
+
+void ShiningSurface::draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* const> numbers) const {
+    for (std::size_t first = 0; !facets_.is_empty() && first < points.size(); first += ViewColumns::kMost) {
+        const std::size_t count = std::min(points.size() - first, ViewColumns::kMost);
+        ViewColumns columns;
+        for (std::size_t i = 0; i < count; ++i) {
+            columns.add(points[first + i], numbers[first + i]->of_point);
+        }
+        facet_kernels().see(facets_, columns);
+        for (std::size_t i = 0; i < count; ++i) {
+            numbers[first + i]->ahead = SurfaceDraw{this, columns.view(i)};
+        }
+    }
 }
 
 double ShiningSurface::pdf(const Vec3d& at, double per_mm2, const Vec3d& from, double cosine) const {

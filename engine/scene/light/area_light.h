@@ -4,6 +4,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "engine/base/kinds.h"
@@ -43,7 +44,11 @@ class ShiningSurface {
     [[nodiscard]] double power(const AreaLight& light) const;
     /// A point of it as `point` sees it; nothing where it shows its dark side.
     [[nodiscard]] std::optional<LightSample> sample(const AreaLight& light, const Vec3d& point,
-                                                    const spectral::PathWavelengths& path, double u1, double u2) const;
+                                                    const spectral::PathWavelengths& path,
+                                                    const LightNumbers& numbers) const;
+    /// Draws what these numbers draw of it for these points, as `sample` would, together; nothing where it is not made
+    /// of a few flat pieces.
+    void draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* const> numbers) const;
     /// With which `sample` draws the point `at` from `from`; `per_mm2`: with which `sampler` does, `cosine`: that of
     /// the light's direction there.
     [[nodiscard]] double pdf(const Vec3d& at, double per_mm2, const Vec3d& from, double cosine) const;
@@ -57,9 +62,11 @@ class ShiningSurface {
         double radius_mm = 0.0;
     };
     [[nodiscard]] double mean_radiance(const AreaLight& light) const;
+    static ShiningFacets facets_of(const SurfaceSampler& sampler);
     static std::optional<Ball> ball_of(const SceneGeometry& scene, const AreaLight& light);
 
     SurfaceSampler sampler_;
+    ShiningFacets facets_;      // of one that is even, and has few
     std::optional<Ball> ball_;  // of one that is a sphere in the world, and shines outwards alone
 };
 

@@ -172,12 +172,15 @@ std::optional<LightSample> Lights::sample_of(const Chosen& chosen, const Vec3d& 
                            .pdf = drawn.pdf,
                            .leaving_per_sample = crossing_pdf_};
     };
-    std::optional<LightSample> found = std::visit(
-        Overloaded{[&](const AreaLight& area) { return entry.surface->sample(area, point, path, u1, u2); },
-                   [&](const LightAtPoint auto& light) { return sample_point(light, point, path); },
-                   [&](const EnvironmentLight& sky) { return of_sky(sky.draw(path, u1, u2, numbers.of_map)); },
-                   [&](const LightAtInfinity auto& sky) { return of_sky(sky.draw(path, u1, u2)); }},
-        entry.light);
+    std::optional<LightSample> found =
+        std::visit(Overloaded{[&](const AreaLight& area) { return entry.surface->sample(area, point, path, numbers); },
+                              [&](const LightAtPoint auto& light) { return sample_point(light, point, path); },
+                              [&](const EnvironmentLight& sky) {
+                                  const auto* ahead = std::get_if<MapDraw>(&numbers.ahead);
+                                  return of_sky(sky.draw(path, u1, u2, ahead != nullptr ? *ahead : MapDraw{}));
+                              },
+                              [&](const LightAtInfinity auto& sky) { return of_sky(sky.draw(path, u1, u2)); }},
+                   entry.light);
     if (found) {
         found->value = scaled(found->value, 1.0 / chosen.probability);
         found->pdf *= entry.probability;
@@ -204,7 +207,10 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
             .leaving_pdf = entry.probability * area.leaving_pdf(per_mm2)};
 }
 
-void Lights::draw_ahead(std::span<LightNumbers* const> numbers) const {
+void Lights::draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* const> numbers) const {
+    if (lights_.size() == 1 && lights_.front().surface) {
+        lights_.front().surface->draw_ahead(points, numbers);
+    }
     constexpr std::size_t kMost = 64;
     std::array<Vec2d, kMost> of_points;
     std::array<LightNumbers*, kMost> of_map{};
@@ -220,7 +226,7 @@ void Lights::draw_ahead(std::span<LightNumbers* const> numbers) const {
         }
         map_->draw(std::span(of_points).first(count), draws);
         for (std::size_t k = 0; k < count; ++k) {
-            of_map[k]->of_map = draws[k];
+            of_map[k]->ahead = draws[k];
         }
     }
 }

@@ -87,8 +87,9 @@ class Lights {
 
     /// The map that rays out of the scene see; none: there is none. Of several the first.
     [[nodiscard]] const Environment* map() const { return map_; }
-    /// Draws what these numbers draw of the map, as `sample` would, together, and while memory brings it.
-    void draw_ahead(std::span<LightNumbers* const> numbers) const;
+    /// Draws what these numbers draw for these points, as `sample` would, together: of the map, while memory brings it,
+    /// and of a shining surface that is the only light.
+    void draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* const> numbers) const;
 
     /// The same as `emitted` for a ray that leaves the scene: visits what each of the lights at infinity has in that
     /// direction. `ahead`: where the map shows it, if that is known.

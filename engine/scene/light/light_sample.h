@@ -7,14 +7,17 @@
 #include <cstdint>
 #include <numbers>
 #include <numeric>
+#include <variant>
 
 #include "engine/base/ray.h"
+#include "engine/scene/light/packet/facet_view.h"
 #include "engine/scene/spectra/texture.h"
 #include "engine/spectral/spectral_sample.h"
 
 namespace lensproof::scene {
 
 class Environment;
+class ShiningSurface;
 
 /// A place of a map that is not yet looked up: it lies beyond the caches, and once it may count, memory is asked for it
 /// (`fetch`), so that it is there when a path knows whether it sees the place.
@@ -30,12 +33,18 @@ struct MapDraw {
     MapPlace place;
 };
 
-/// What draws a light and a point of it: three numbers in [0, 1), and what they draw of a map where that is known
+/// A point of a shining surface that was drawn, as a point sees it.
+struct SurfaceDraw {
+    const ShiningSurface* surface = nullptr;
+    ShiningView<double> view;
+};
+
+/// What draws a light and a point of it: three numbers in [0, 1), and what they draw where that is known
 /// (`Lights::draw_ahead`).
 struct LightNumbers {
     double of_light = 0.0;
     Vec2d of_point;
-    MapDraw of_map{};
+    std::variant<std::monostate, MapDraw, SurfaceDraw> ahead{};
 };
 
 /// Light that reaches a point: what next-event estimation adds, if nothing stands in the way.

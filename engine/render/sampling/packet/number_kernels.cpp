@@ -11,10 +11,6 @@ void NumberColumns::add(const PathSampler& sampler, std::uint64_t sets) {
     sample[i] = place.sample;
 }
 
-std::array<double, NumberColumns::kNumbers> NumberColumns::numbers(std::size_t i) const {
-    return {number[0][i], number[1][i], number[2][i], number[3][i]};
-}
-
 const NumberKernels& number_kernels(std::optional<SimdLevel> level) {
     static const LoopsByLevel<NumberKernels> found([]<SimdLevel level>() { return number_kernels_at<level>(); });
     return found.at(level);

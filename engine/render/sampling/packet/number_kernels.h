@@ -29,7 +29,6 @@ struct alignas(64) NumberColumns {
 
     /// Adds what `sampler` says when it has been asked `sets` times more.
     void add(const PathSampler& sampler, std::uint64_t sets);
-    [[nodiscard]] std::array<double, kNumbers> numbers(std::size_t i) const;
     [[nodiscard]] Vec3d matt_direction(std::size_t i) const { return {matt[0][i], matt[1][i], matt[2][i]}; }
 };
 

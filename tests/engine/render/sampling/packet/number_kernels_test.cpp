@@ -27,7 +27,7 @@ TEST(NumberKernels, EveryLevelSaysWhatTheSamplersSay) {
             for (std::size_t i = 0; i < samplers.size(); ++i) {
                 const auto expected = samplers[i].peek();
                 for (std::size_t k = 0; k < NumberColumns::kNumbers; ++k) {
-                    EXPECT_EQ(found.numbers(i)[k], expected[k]) << simd_name(level);
+                    EXPECT_EQ(found.number[k][i], expected[k]) << simd_name(level);
                 }
                 if (static_cast<int>(i) < found.with_matt) {
                     EXPECT_EQ(found.matt_direction(i), cosine_direction(expected[1], expected[2])) << simd_name(level);
