@@ -22,7 +22,7 @@ struct PathSettings {
     /// Light that comes straight from a sun is left out: another pass has it (`waves`).
     bool leaves_suns_out = false;
     /// From this bounce on, paths are ended at random by how little they still carry ("Russian roulette", Arvo & Kirk,
-    /// SIGGRAPH 1990); those that go on carry more for it.
+    /// SIGGRAPH 1990): one goes on with the probability of its root, and carries more for it.
     int roulette_from = 3;
 };
 
@@ -129,7 +129,8 @@ inline bool survives_roulette(const PathSettings& settings, int bounce, double n
     if (bounce < settings.roulette_from || largest >= 1.0F) {
         return true;
     }
-    const float survival = std::max(largest, 0.05F);
+    // The root: by all that is left, what ends would cost less than the noise that its ending makes.
+    const float survival = std::max(std::sqrt(largest), 0.05F);
     carries *= 1.0F / survival;
     return number < survival;
 }
