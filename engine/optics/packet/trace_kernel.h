@@ -181,23 +181,25 @@ class BlockTracer {
 
     template <bool from_far, bool per_lane>
     void pass_packets(const Here& here) {
-        if (!lens_.indices[here.index].bends) {
-            for (int packet = 0; packet < packets_; ++packet) {
-                pass_opening<from_far, per_lane>(here, packet);
-            }
-        } else if constexpr (per_lane) {
-            for (int packet = 0; packet < packets_; ++packet) {
-                pass_packet<from_far, true>(here, packet, media<true>(here.index, packet));
-            }
-        } else {
-            const Media the_same = media<false>(here.index, 0);
-            for (int packet = 0; packet < packets_; ++packet) {
-                pass_packet<from_far, false>(here, packet, the_same);
+        lens_.indices[here.index].bends ? pass_packets<from_far, per_lane, true>(here)
+                                        : pass_packets<from_far, per_lane, false>(here);
+    }
+
+    template <bool from_far, bool per_lane, bool bends>
+    void pass_packets(const Here& here) {
+        [[maybe_unused]] const Media the_same = media<false>(here.index, 0);
+        for (int packet = 0; packet < packets_; ++packet) {
+            if constexpr (per_lane) {
+                pass_packet<from_far, true, bends>(here, packet, media<true>(here.index, packet));
+            } else {
+                pass_packet<from_far, false, bends>(here, packet, the_same);
             }
         }
     }
 
-    template <bool from_far, bool per_lane>
+    /// Between media of one index, as of a stop, nothing bends, and all that is inside passes: to the bit what
+    /// refracting does, since the root of a rounded square is what was squared.
+    template <bool from_far, bool per_lane, bool bends>
     void pass_packet(const Here& here, int packet, const Media& media) {
         const Mask going = this->going(packet);
         if (!any(going)) {
@@ -206,7 +208,10 @@ class BlockTracer {
         const State before = load(packet);
         const Vec3<Numbers> near = moved_near<from_far>(here, before);
         const Intersection<Numbers> met = intersect_from_near(near, before.direction, curvature(here), heading());
-        const Refraction<Numbers> bent = bent_at(here, before, met, media);
+        const Refraction<Numbers> bent =
+            bends ? bent_at(here, before, met, media)
+                  : Refraction<Numbers>{
+                        .direction = before.direction, .cos_refraction = met.cos_incidence, .transmitted = Mask(true)};
         const Mask passes = met.hit && is_inside(here, met) && bent.transmitted;
         if (!all(passes || !going)) {
             pass_with_ends<from_far, per_lane>(here, packet);
@@ -220,30 +225,9 @@ class BlockTracer {
         }
         add_path(packet, media, distance_moved<from_far>(here, before) + met.distance, going);
         add_depth<per_lane>(here, packet, distance_moved<from_far>(here, before) + met.distance, going);
-        add_loss(packet, fresnel(media, met, bent), going);
-    }
-
-    /// Between media of one index, as of a stop: nothing bends, and all that is inside passes. To the bit what
-    /// `pass_packet` does, since the root of a rounded square is what was squared.
-    template <bool from_far, bool per_lane>
-    void pass_opening(const Here& here, int packet) {
-        const Mask going = this->going(packet);
-        if (!any(going)) {
-            return;
+        if constexpr (bends) {
+            add_loss(packet, fresnel(media, met, bent), going);
         }
-        const State before = load(packet);
-        const Vec3<Numbers> near = moved_near<from_far>(here, before);
-        const Intersection<Numbers> met = intersect_from_near(near, before.direction, curvature(here), heading());
-        if (!all((met.hit && is_inside(here, met)) || !going)) {
-            pass_with_ends<from_far, per_lane>(here, packet);
-            return;
-        }
-        store(packet, {select(going, met.point, before.origin), before.direction});
-        if constexpr (carry == Carry::all) {
-            add_path(packet, media<per_lane>(here.index, packet), distance_moved<from_far>(here, before) + met.distance,
-                     going);
-        }
-        add_depth<per_lane>(here, packet, distance_moved<from_far>(here, before) + met.distance, going);
     }
 
     static Numbers heading() { return Numbers(kForward ? Scalar(1) : Scalar(-1)); }
