@@ -124,12 +124,7 @@ class ExitKernel {
         if (i >= from_.size) {
             return;
         }
-        ray.origin.x.store(rays_.origin.x.data() + i);
-        ray.origin.y.store(rays_.origin.y.data() + i);
-        ray.origin.z.store(rays_.origin.z.data() + i);
-        ray.direction.x.store(rays_.direction.x.data() + i);
-        ray.direction.y.store(rays_.direction.y.data() + i);
-        ray.direction.z.store(rays_.direction.z.data() + i);
+        rays_.store(i, ray);
         transmittance.store(rays_.transmittance.data() + i);
     }
 

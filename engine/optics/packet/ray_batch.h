@@ -87,6 +87,18 @@ struct RayBatch {
         put(direction, ray.direction);
     }
 
+    /// A packet of rays, from the i-th on, which is the first of a packet.
+    template <class Numbers>
+    void store(int i, const Ray<Numbers>& rays) {
+        const auto put = [i](Vectors& to, const Vec3<Numbers>& from) {
+            from.x.store(to.x.data() + i);
+            from.y.store(to.y.data() + i);
+            from.z.store(to.z.data() + i);
+        };
+        put(origin, rays.origin);
+        put(direction, rays.direction);
+    }
+
     [[nodiscard]] Ray<T> ray(int i) const {
         const auto at = static_cast<std::size_t>(i);
         return {{origin.x[at], origin.y[at], origin.z[at]}, {direction.x[at], direction.y[at], direction.z[at]}};

@@ -60,6 +60,26 @@ struct CameraPathBuffer {
     /// Weighs all paths so.
     void leave_heroes_alone();
 
+    /// Adds `count` paths: `copy(from, to)` writes what a column of these has of them.
+    template <class T, class Copy>
+    void append(const PathStarts& starts, const optics::RayBatch<T>& rays, int count, const Copy& copy) {
+        const auto add = [&](const auto& from, auto& to) { copy(from.data(), to.data() + size); };
+        add(starts.pixel, pixel);
+        add(starts.sample, sample);
+        add(starts.wavelength, wavelength);
+        add(starts.film_x, film_x);
+        add(starts.film_y, film_y);
+        add(starts.weight, weight);
+        add(starts.etendue, etendue);
+        add(rays.origin.x, origin.x);
+        add(rays.origin.y, origin.y);
+        add(rays.origin.z, origin.z);
+        add(rays.direction.x, direction.x);
+        add(rays.direction.y, direction.y);
+        add(rays.direction.z, direction.z);
+        size += count;
+    }
+
     /// What a path counts, times a factor.
     void scale(std::size_t i, double factor) {
         weight[i] *= factor;

@@ -131,22 +131,8 @@ IdealCamera::Paths::Paths(const IdealCamera& camera, const FilmSampling& film, c
 bool IdealCamera::Paths::fill(CameraPathBuffer& buffer) {
     const bool is_filled = samples_.fill(buffer, [&](PathStarts& starts) {
         kernels_->leave_ideal_camera(optics_, starts, rays_);
-        const auto append = [&](const auto& from, auto& to) {
-            std::copy_n(from.begin(), starts.size, to.begin() + buffer.size);
-        };
-        append(starts.pixel, buffer.pixel);
-        append(starts.sample, buffer.sample);
-        append(starts.wavelength, buffer.wavelength);
-        append(starts.film_x, buffer.film_x);
-        append(starts.film_y, buffer.film_y);
-        append(starts.weight, buffer.weight);
-        append(rays_.origin.x, buffer.origin.x);
-        append(rays_.origin.y, buffer.origin.y);
-        append(rays_.origin.z, buffer.origin.z);
-        append(rays_.direction.x, buffer.direction.x);
-        append(rays_.direction.y, buffer.direction.y);
-        append(rays_.direction.z, buffer.direction.z);
-        buffer.size += starts.size;
+        buffer.append(starts, rays_, starts.size,
+                      [&](const auto* from, auto* to) { std::copy_n(from, starts.size, to); });
         started_ += starts.size;
     });
     if (carry_ != PathCarry::hero) {

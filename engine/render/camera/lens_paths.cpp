@@ -132,27 +132,13 @@ void BasicLensPaths<T>::move_survivors(PathStarts& starts, CameraPathBuffer& buf
             starts.weight[i] *= rays.transmittance[i];
         }
         const Survivors survivors = find_survivors(starts, rays);
-        const auto append = [&](const auto& from, auto& to) { survivors.copy(from.data(), to.data() + buffer.size); };
-        append(starts.pixel, buffer.pixel);
-        append(starts.sample, buffer.sample);
-        append(starts.wavelength, buffer.wavelength);
-        append(starts.film_x, buffer.film_x);
-        append(starts.film_y, buffer.film_y);
-        append(starts.weight, buffer.weight);
-        append(starts.etendue, buffer.etendue);
-        append(rays.origin.x, buffer.origin.x);
-        append(rays.origin.y, buffer.origin.y);
-        append(rays.origin.z, buffer.origin.z);
-        append(rays.direction.x, buffer.direction.x);
-        append(rays.direction.y, buffer.direction.y);
-        append(rays.direction.z, buffer.direction.z);
-        return survivors.count;
+        buffer.append(starts, rays, survivors.count, [&](const auto* from, auto* to) { survivors.copy(from, to); });
     };
     const int first = buffer.size;
     if constexpr (std::is_same_v<T, double>) {
-        buffer.size += move(aimed_);
+        move(aimed_);
     } else {
-        buffer.size += move(*narrowed_);
+        move(*narrowed_);
         normalize_directions(buffer, first);
     }
 }

@@ -95,12 +95,7 @@ template <class Abi>
             aim<Numbers>({x, y}, {Numbers::load(starts.pupil_x.data() + i), Numbers::load(starts.pupil_y.data() + i)},
                          to_pupil_z, Numbers::load(starts.pupil_area.data() + i));
         etendue.store(starts.etendue.data() + i);
-        x.store(rays.origin.x.data() + i);
-        y.store(rays.origin.y.data() + i);
-        z.store(rays.origin.z.data() + i);
-        direction.x.store(rays.direction.x.data() + i);
-        direction.y.store(rays.direction.y.data() + i);
-        direction.z.store(rays.direction.z.data() + i);
+        rays.store(i, Ray<Numbers>{{x, y, z}, direction});
     }
     std::copy_n(starts.wavelength.data(), starts.size, rays.wavelength.data());
     rays.size = starts.size;
@@ -120,12 +115,7 @@ template <class Abi>
             {Numbers::load(starts.film_x.data() + i), Numbers::load(starts.film_y.data() + i)},
             Numbers::load(starts.pupil_u.data() + i), Numbers::load(starts.pupil_v.data() + i));
         (weight * Numbers::load(starts.filter_weight.data() + i)).store(starts.weight.data() + i);
-        ray.origin.x.store(rays.origin.x.data() + i);
-        ray.origin.y.store(rays.origin.y.data() + i);
-        ray.origin.z.store(rays.origin.z.data() + i);
-        ray.direction.x.store(rays.direction.x.data() + i);
-        ray.direction.y.store(rays.direction.y.data() + i);
-        ray.direction.z.store(rays.direction.z.data() + i);
+        rays.store(i, ray);
     }
     rays.size = starts.size;
 }
