@@ -150,15 +150,16 @@ struct Columns {
 
 /// Calls visit(i, columns, j) for each of `count` rays, which `ray_of(i)` says, the j-th of its columns.
 template <class RayOf, class Visit>
-void meet_in_columns(const SceneGeometry::Data& data, std::size_t count, const RayOf& ray_of, const Visit& visit) {
+void meet_in_columns(const SceneGeometry::Data& data, const AnalyticKernels::Meet& meet, std::size_t count,
+                     const RayOf& ray_of, const Visit& visit) {
     Columns columns;
     for (std::size_t first = 0; first < count; first += RayColumns::kMost) {
         columns.rays.size = std::min(RayColumns::kMost, count - first);
         for (std::size_t j = 0; j < columns.rays.size; ++j) {
             columns.rays.set(j, ray_of(first + j));
         }
-        analytic_kernels().meet_objects(data.one_by_one(), columns.rays, columns.objects);
-        analytic_kernels().meet_triangles(data.triangles, columns.rays, columns.triangles);
+        meet.objects(data.one_by_one(), columns.rays, columns.objects);
+        meet.triangles(data.triangles, columns.rays, columns.triangles);
         for (std::size_t j = 0; j < columns.rays.size; ++j) {
             visit(first + j, columns, j);
         }
@@ -274,7 +275,7 @@ void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
     const auto stretch = [&](std::size_t i) -> Stretch<double> {
         return {.origin = rays[i].origin, .direction = rays[i].direction, .to = kInfinity};
     };
-    meet_in_columns(data, rays.size(), stretch, [&](std::size_t i, const Columns& columns, std::size_t j) {
+    const auto describe_first = [&](std::size_t i, const Columns& columns, std::size_t j) {
         hits[i].reset();
         if (!is_usable(rays[i].origin, rays[i].direction)) {
             return;
@@ -290,7 +291,8 @@ void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
         if (nearest.is_one()) {
             describe(data, stretch(i), nearest, hits[i].emplace());
         }
-    });
+    };
+    meet_in_columns(data, analytic_kernels().first, rays.size(), stretch, describe_first);
 }
 
 bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to) {
@@ -312,13 +314,14 @@ void find_occluded(const SceneGeometry& scene, std::span<const Segment> segments
     const auto stretch = [&](std::size_t i) {
         return stretches[i % stretches.size()] = stretch_between(scene, segments[i].from, segments[i].to);
     };
-    meet_in_columns(data, segments.size(), stretch, [&](std::size_t i, const Columns& columns, std::size_t j) {
+    const auto judge = [&](std::size_t i, const Columns& columns, std::size_t j) {
         const Stretch<double>& ray = stretches[i % stretches.size()];
-        const bool is_blocked = is_usable(ray.origin, ray.direction) &&
-                                (columns.objects.first(j).is_one() || columns.triangles.first(j).is_one() ||
-                                 (data.has_embree_geometry && embree_finds_any(data, ray)));
+        const bool is_blocked =
+            is_usable(ray.origin, ray.direction) && (columns.objects.is_any(j) || columns.triangles.is_any(j) ||
+                                                     (data.has_embree_geometry && embree_finds_any(data, ray)));
         are_occluded[i] = is_blocked ? 1 : 0;
-    });
+    };
+    meet_in_columns(data, analytic_kernels().any, segments.size(), stretch, judge);
 }
 
 }  // namespace lensproof::scene

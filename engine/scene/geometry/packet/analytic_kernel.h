@@ -11,22 +11,22 @@
 
 namespace lensproof::scene {
 
-template <class Numbers, class Column>
-Vec3<Numbers> load_vector(const Column& x, const Column& y, const Column& z, std::size_t i) {
-    return {Numbers::load(x.data() + i), Numbers::load(y.data() + i), Numbers::load(z.data() + i)};
-}
-
 template <class Numbers>
 Stretch<Numbers> load_stretch(const RayColumns& rays, std::size_t i) {
-    return {.origin = load_vector<Numbers>(rays.origin_x, rays.origin_y, rays.origin_z, i),
-            .direction = load_vector<Numbers>(rays.direction_x, rays.direction_y, rays.direction_z, i),
+    const auto vector = [&](const std::array<RayColumns::Column, 3>& of) {
+        return Vec3<Numbers>{Numbers::load(of[0].data() + i), Numbers::load(of[1].data() + i),
+                             Numbers::load(of[2].data() + i)};
+    };
+    return {.origin = vector(rays.origin),
+            .direction = vector(rays.direction),
             .from = Numbers::load(rays.from.data() + i),
             .to = Numbers::load(rays.to.data() + i)};
 }
 
 template <class Numbers>
-AffineFunction<Numbers> load_function(const TriangleBlock::Function& function, std::size_t lane) {
-    return {.gradient = load_vector<Numbers>(function.x, function.y, function.z, lane),
+AffineFunction<Vec3, Numbers> load_function(const TriangleBlock::Function& function, std::size_t lane) {
+    return {.gradient = {Numbers::load(function.x.data() + lane), Numbers::load(function.y.data() + lane),
+                         Numbers::load(function.z.data() + lane)},
             .at_origin = Numbers::load(function.at_origin.data() + lane)};
 }
 
@@ -35,27 +35,26 @@ Vec3<Numbers> everywhere(const Vec3d& v) {
     return {Numbers(v.x), Numbers(v.y), Numbers(v.z)};
 }
 template <class Numbers>
-AffineFunction<Numbers> everywhere(const AffineFunction<double>& function) {
+Vec2<Numbers> everywhere(const Vec2d& v) {
+    return {Numbers(v.x), Numbers(v.y)};
+}
+template <class Numbers, template <class> class Vector>
+AffineFunction<Vector, Numbers> everywhere(const AffineFunction<Vector, double>& function) {
     return {.gradient = everywhere<Numbers>(function.gradient), .at_origin = Numbers(function.at_origin)};
 }
 template <class Numbers>
-TriangleInPlane<Numbers> everywhere(const TriangleInPlane<double>& triangle) {
-    return {.b1 = everywhere<Numbers>(triangle.b1),
-            .b2 = everywhere<Numbers>(triangle.b2),
-            .b1_slope = Numbers(triangle.b1_slope),
-            .b2_slope = Numbers(triangle.b2_slope)};
+TriangleInPlane<Vec2, Numbers> everywhere(const TriangleInPlane<Vec2, double>& triangle) {
+    return {.b1 = everywhere<Numbers>(triangle.b1), .b2 = everywhere<Numbers>(triangle.b2)};
 }
-
-/// As `largest_coordinate` of affine.h.
 template <class Numbers>
-Numbers largest_coordinate_of(const Vec3<Numbers>& v) {
-    const auto larger = [](const Numbers& a, const Numbers& b) { return select(a < b, b, a); };
-    return larger(larger(abs(v.x), abs(v.y)), abs(v.z));
+TriangleRim<Numbers> everywhere(const TriangleRim<double>& rim) {
+    return {.least_b1 = Numbers(rim.least_b1), .least_b2 = Numbers(rim.least_b2), .most_sum = Numbers(rim.most_sum)};
 }
 
 /// The nearest meetings so far of the lanes' rays, whose stretches end there.
-template <class Numbers>
+template <class Abi>
 struct NearestOf {
+    using Numbers = Pack<double, Abi>;
     Stretch<Numbers> ray;
     Numbers b1{0.0};
     Numbers b2{0.0};
@@ -76,54 +75,95 @@ struct NearestOf {
     }
 };
 
+/// Whether the lanes' rays have met anything.
 template <class Abi>
+struct AnyOf {
+    using Numbers = Pack<double, Abi>;
+    Stretch<Numbers> ray;
+    MaskOf<Numbers> is_met{false};
+
+    void offer(const Crossing<Numbers>& crossing, const Numbers& /*of*/) { is_met = is_met || crossing.is_met; }
+    void store(MeetingColumns& met, std::size_t i) const {
+        select(is_met, Numbers(0.0), Numbers(-1.0)).store(met.which.data() + i);
+    }
+};
+
+/// Found: NearestOf or AnyOf.
+template <class Found>
 [[gnu::flatten]] void meet_objects(std::span<const AnalyticObject> objects, const RayColumns& rays,
                                    MeetingColumns& met) {
-    using Numbers = Pack<double, Abi>;
+    using Numbers = typename Found::Numbers;
     for (std::size_t i = 0; i < rays.size; i += Numbers::kLanes) {
-        NearestOf<Numbers> nearest{.ray = load_stretch<Numbers>(rays, i)};
+        Found found{.ray = load_stretch<Numbers>(rays, i)};
         for (std::size_t k = 0; k < objects.size(); ++k) {
-            nearest.offer(meet(objects[k], nearest.ray), Numbers(static_cast<double>(k)));
+            found.offer(meet(objects[k], found.ray), Numbers(static_cast<double>(k)));
         }
-        nearest.store(met, i);
+        found.store(met, i);
     }
 }
 
-template <class Abi>
-[[gnu::flatten]] void meet_triangles(const FewTriangles& few, const RayColumns& rays, MeetingColumns& met) {
-    using Numbers = Pack<double, Abi>;
-    for (std::size_t i = 0; i < rays.size; i += Numbers::kLanes) {
-        NearestOf<Numbers> nearest{.ray = load_stretch<Numbers>(rays, i)};
-        const Numbers reach = largest_coordinate_of(nearest.ray.origin) + Numbers(few.reach_mm);
-        std::size_t k = 0;
-        for (const TrianglePlane& plane : few.planes) {
-            const PlaneMeeting<Numbers> meeting = meet_plane(everywhere<Numbers>(plane.height), nearest.ray);
-            for (; k < plane.end; ++k) {
-                nearest.offer(meet_in_plane(everywhere<Numbers>(few.triangles[k]), meeting, reach),
-                              Numbers(static_cast<double>(k)));
-            }
+/// `rim_of(triangle)`: where it ends for these rays, the i-th and so on.
+template <class Found, class RimOf>
+void offer_triangles(const FewTriangles& few, const RayColumns& rays, std::size_t i, const RimOf& rim_of,
+                     Found& found) {
+    using Numbers = typename Found::Numbers;
+    std::size_t k = 0;
+    for (const TrianglePlane& plane : few.planes) {
+        const PlaneMeeting<Numbers> meeting = meet_plane(everywhere<Numbers>(plane.height), found.ray);
+        if (!any(meeting.is_met)) {
+            k = plane.end;
+            continue;
         }
-        nearest.store(met, i);
+        const auto coordinate = [&](std::size_t of) {
+            return Numbers::load(rays.origin[of].data() + i) +
+                   meeting.at * Numbers::load(rays.direction[of].data() + i);
+        };
+        const Vec2<Numbers> point{coordinate(plane.across[0]), coordinate(plane.across[1])};
+        for (; k < plane.end; ++k) {
+            const FlatTriangle& triangle = few.triangles[k];
+            found.offer(meet_in_plane(everywhere<Numbers>(triangle.in_plane), rim_of(triangle), meeting, point),
+                        Numbers(static_cast<double>(k)));
+        }
+    }
+}
+
+template <class Found>
+[[gnu::flatten]] void meet_triangles(const FewTriangles& few, const RayColumns& rays, MeetingColumns& met) {
+    using Numbers = typename Found::Numbers;
+    for (std::size_t i = 0; i < rays.size; i += Numbers::kLanes) {
+        Found found{.ray = load_stretch<Numbers>(rays, i)};
+        const Numbers reach = few.reach_from(found.ray.origin);
+        if (all(reach <= Numbers(few.near_reach()))) {
+            const auto near_rim = [](const FlatTriangle& of) { return everywhere<Numbers>(of.near_rim); };
+            offer_triangles(few, rays, i, near_rim, found);
+        } else {
+            const auto rim = [&](const FlatTriangle& of) {
+                return grown_rim(Numbers(of.b1_slope), Numbers(of.b2_slope), reach);
+            };
+            offer_triangles(few, rays, i, rim, found);
+        }
+        found.store(met, i);
     }
 }
 
 template <class Abi>
 [[gnu::flatten]] FirstMeeting meet_first_triangle(const FewTriangles& few, const Stretch<double>& ray) {
     using Numbers = Pack<double, Abi>;
-    NearestOf<Numbers> nearest{.ray = {.origin = everywhere<Numbers>(ray.origin),
-                                       .direction = everywhere<Numbers>(ray.direction),
-                                       .from = Numbers(ray.from),
-                                       .to = Numbers(ray.to)}};
-    const Numbers reach(largest_coordinate(ray.origin) + few.reach_mm);
+    NearestOf<Abi> nearest{.ray = {.origin = everywhere<Numbers>(ray.origin),
+                                   .direction = everywhere<Numbers>(ray.direction),
+                                   .from = Numbers(ray.from),
+                                   .to = Numbers(ray.to)}};
+    const Numbers reach(few.reach_from(ray.origin));
     Numbers here = Numbers::iota();
     for (const TriangleBlock& block : few.blocks) {
         for (std::size_t lane = 0; lane < TriangleBlock::kLanes; lane += Numbers::kLanes) {
-            const TriangleInPlane<Numbers> triangles{.b1 = load_function<Numbers>(block.b1, lane),
-                                                     .b2 = load_function<Numbers>(block.b2, lane),
-                                                     .b1_slope = Numbers::load(block.b1_slope.data() + lane),
-                                                     .b2_slope = Numbers::load(block.b2_slope.data() + lane)};
+            const TriangleInPlane<Vec3, Numbers> triangles{.b1 = load_function<Numbers>(block.b1, lane),
+                                                           .b2 = load_function<Numbers>(block.b2, lane)};
+            const TriangleRim<Numbers> rims = grown_rim(Numbers::load(block.b1_slope.data() + lane),
+                                                        Numbers::load(block.b2_slope.data() + lane), reach);
             const PlaneMeeting<Numbers> meeting = meet_plane(load_function<Numbers>(block.height, lane), nearest.ray);
-            nearest.offer(meet_in_plane(triangles, meeting, reach), here);
+            const Vec3<Numbers> point = nearest.ray.origin + meeting.at * nearest.ray.direction;
+            nearest.offer(meet_in_plane(triangles, rims, meeting, point), here);
             here = here + Numbers(Numbers::kLanes);
         }
     }
@@ -141,8 +181,8 @@ template <class Abi>
 template <>
 AnalyticKernels analytic_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
     using Abi = AbiOf<SimdLevel::LENSPROOF_LEVEL, double>;
-    return {.meet_objects = meet_objects<Abi>,
-            .meet_triangles = meet_triangles<Abi>,
+    return {.first = {.objects = meet_objects<NearestOf<Abi>>, .triangles = meet_triangles<NearestOf<Abi>>},
+            .any = {.objects = meet_objects<AnyOf<Abi>>, .triangles = meet_triangles<AnyOf<Abi>>},
             .meet_first_triangle = meet_first_triangle<Abi>};
 }
 

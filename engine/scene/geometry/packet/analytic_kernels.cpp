@@ -3,12 +3,12 @@
 namespace lensproof::scene {
 
 void RayColumns::set(std::size_t i, const Stretch<double>& ray) {
-    origin_x[i] = ray.origin.x;
-    origin_y[i] = ray.origin.y;
-    origin_z[i] = ray.origin.z;
-    direction_x[i] = ray.direction.x;
-    direction_y[i] = ray.direction.y;
-    direction_z[i] = ray.direction.z;
+    origin[0][i] = ray.origin.x;
+    origin[1][i] = ray.origin.y;
+    origin[2][i] = ray.origin.z;
+    direction[0][i] = ray.direction.x;
+    direction[1][i] = ray.direction.y;
+    direction[2][i] = ray.direction.z;
     from[i] = ray.from;
     to[i] = ray.to;
 }

@@ -16,9 +16,8 @@ struct alignas(64) RayColumns {
     static constexpr std::size_t kMost = 64;
     using Column = std::array<double, kMost>;
 
-    Column origin_x, origin_y, origin_z;
-    Column direction_x, direction_y, direction_z;
-    Column from, to;  // the stretch that is asked for
+    std::array<Column, 3> origin, direction;  // x, y, z
+    Column from, to;                          // the stretch that is asked for
     std::size_t size = 0;
 
     /// The i-th ray.
@@ -40,14 +39,18 @@ struct alignas(64) MeetingColumns {
     [[nodiscard]] FirstMeeting first(std::size_t i) const {
         return {.meeting = {.at = at[i], .b1 = b1[i], .b2 = b2[i]}, .which = static_cast<int>(which[i])};
     }
+    [[nodiscard]] bool is_any(std::size_t i) const { return which[i] >= 0.0; }
 };
 
 /// The loops of one level; all levels yield the same bits. Of two that are equally far, the one before counts.
 struct AnalyticKernels {
-    /// Which of the objects each ray meets first.
-    void (*meet_objects)(std::span<const AnalyticObject> objects, const RayColumns& rays, MeetingColumns& met);
-    /// Which of the triangles.
-    void (*meet_triangles)(const FewTriangles& triangles, const RayColumns& rays, MeetingColumns& met);
+    /// What each ray meets of objects, or of triangles.
+    struct Meet {
+        void (*objects)(std::span<const AnalyticObject> objects, const RayColumns& rays, MeetingColumns& met);
+        void (*triangles)(const FewTriangles& triangles, const RayColumns& rays, MeetingColumns& met);
+    };
+    Meet first;
+    Meet any;  // whether it meets one: `which` alone is filled, and says no more
     /// The same of one ray.
     FirstMeeting (*meet_first_triangle)(const FewTriangles& triangles, const Stretch<double>& ray);
 };

@@ -8,15 +8,33 @@ namespace lensproof::scene {
 namespace {
 
 /// `gradient` · (point − zero).
-AffineFunction<double> function_of(const Vec3d& gradient, const Vec3d& zero) {
+template <template <class> class Vector>
+AffineFunction<Vector, double> function_of(const Vector<double>& gradient, const Vector<double>& zero) {
     return {.gradient = gradient, .at_origin = -dot(gradient, zero)};
 }
 
-void set_lane(TriangleBlock::Function& block, std::size_t lane, const AffineFunction<double>& function) {
+/// The coordinates other than the one that `normal` is longest along.
+std::array<std::size_t, 2> across(const Vec3d& normal) {
+    const Vec3d size{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
+    if (size.x > size.y && size.x > size.z) {
+        return {1, 2};
+    }
+    return size.y > size.z ? std::array<std::size_t, 2>{0, 2} : std::array<std::size_t, 2>{0, 1};
+}
+
+void set_lane(TriangleBlock::Function& block, std::size_t lane, const AffineFunction<Vec3, double>& function) {
     block.x[lane] = function.gradient.x;
     block.y[lane] = function.gradient.y;
     block.z[lane] = function.gradient.z;
     block.at_origin[lane] = function.at_origin;
+}
+
+/// By all three coordinates.
+AffineFunction<Vec3, double> in_world(const AffineFunction<Vec2, double>& function, const TrianglePlane& plane) {
+    std::array<double, 3> gradient{};
+    gradient[plane.across[0]] = function.gradient.x;
+    gradient[plane.across[1]] = function.gradient.y;
+    return {.gradient = {gradient[0], gradient[1], gradient[2]}, .at_origin = function.at_origin};
 }
 
 }  // namespace
@@ -24,8 +42,6 @@ void set_lane(TriangleBlock::Function& block, std::size_t lane, const AffineFunc
 void FewTriangles::add(const TriangleSides& sides) {
     const Vec3d area = cross(sides.to_second, sides.to_third);
     const double per_area2 = 1.0 / dot(area, area);
-    const Vec3d b1 = per_area2 * cross(sides.to_third, area);
-    const Vec3d b2 = per_area2 * cross(area, sides.to_second);
     // No farther from the plane before than rounding puts a plane off its own triangle.
     const double rounding = 4.0 * 0x1p-53 * reach_mm;
     const auto is_in = [&](const TrianglePlane& plane) {
@@ -33,24 +49,38 @@ void FewTriangles::add(const TriangleSides& sides) {
                                    [&](const Vec3d& vertex) { return std::abs(plane.height.at(vertex)) <= rounding; });
     };
     if (planes.empty() || !is_in(planes.back())) {
-        planes.push_back({.height = function_of(std::sqrt(per_area2) * area, sides.first)});
+        planes.push_back(
+            {.height = function_of<Vec3>(std::sqrt(per_area2) * area, sides.first), .across = across(area)});
     }
-    triangles.push_back({.b1 = function_of(b1, sides.first),
-                         .b2 = function_of(b2, sides.first),
-                         .b1_slope = length(b1),
-                         .b2_slope = length(b2)});
-    planes.back().end = triangles.size();
+    TrianglePlane& plane = planes.back();
+    const auto in_plane = [&](const Vec3d& v) {
+        const std::array<double, 3> coordinates{v.x, v.y, v.z};
+        return Vec2d{coordinates[plane.across[0]], coordinates[plane.across[1]]};
+    };
+    const Vec2d first = in_plane(sides.first);
+    const Vec2d second = in_plane(sides.to_second);
+    const Vec2d third = in_plane(sides.to_third);
+    const double per_area = 1.0 / (second.x * third.y - second.y * third.x);
+    const Vec2d b1 = per_area * Vec2d{third.y, -third.x};
+    const Vec2d b2 = per_area * Vec2d{-second.y, second.x};
+    const double b1_slope = length(b1);
+    const double b2_slope = length(b2);
+    triangles.push_back({.in_plane = {.b1 = function_of<Vec2>(b1, first), .b2 = function_of<Vec2>(b2, first)},
+                         .b1_slope = b1_slope,
+                         .b2_slope = b2_slope,
+                         .near_rim = grown_rim(b1_slope, b2_slope, near_reach())});
+    plane.end = triangles.size();
 
     const std::size_t lane = (triangles.size() - 1) % TriangleBlock::kLanes;
     if (lane == 0) {
         blocks.emplace_back();
     }
     TriangleBlock& block = blocks.back();
-    set_lane(block.height, lane, planes.back().height);
-    set_lane(block.b1, lane, triangles.back().b1);
-    set_lane(block.b2, lane, triangles.back().b2);
-    block.b1_slope[lane] = triangles.back().b1_slope;
-    block.b2_slope[lane] = triangles.back().b2_slope;
+    set_lane(block.height, lane, plane.height);
+    set_lane(block.b1, lane, in_world(triangles.back().in_plane.b1, plane));
+    set_lane(block.b2, lane, in_world(triangles.back().in_plane.b2, plane));
+    block.b1_slope[lane] = b1_slope;
+    block.b2_slope[lane] = b2_slope;
 }
 
 }  // namespace lensproof::scene

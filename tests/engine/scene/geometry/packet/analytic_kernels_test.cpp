@@ -33,12 +33,16 @@ std::vector<AnalyticObject> some_objects(std::mt19937_64& random) {
     return objects;
 }
 
+/// Every fourth from far away.
 RayColumns some_rays(std::mt19937_64& random, std::size_t size) {
     RayColumns rays;
     rays.size = size;
     for (std::size_t i = 0; i < size; ++i) {
-        rays.set(i, {.origin = {uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
-                     .direction = random_direction(random),
+        const Vec3d direction = random_direction(random);
+        const Vec3d origin{uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)};
+        const double back = size % 2 == 0 && i % 4 == 0 ? 1e4 : 0.0;
+        rays.set(i, {.origin = origin - back * direction,
+                     .direction = direction,
                      .from = uniform(random, 0, 2),
                      .to = i % 3 == 0 ? 8.0 : 1e30});
     }
@@ -46,8 +50,8 @@ RayColumns some_rays(std::mt19937_64& random, std::size_t size) {
 }
 
 Stretch<double> ray_of(const RayColumns& rays, std::size_t i) {
-    return {.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
-            .direction = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
+    return {.origin = {rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
+            .direction = {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
             .from = rays.from[i],
             .to = rays.to[i]};
 }
@@ -85,10 +89,13 @@ TEST(AnalyticKernels, EveryLevelMeetsWhatSingleRaysDo) {
         const RayColumns rays = some_rays(random, 1 + round % RayColumns::kMost);
         for (const SimdLevel level : available_simd_levels()) {
             MeetingColumns found;
-            analytic_kernels(level).meet_objects(objects, rays, found);
+            MeetingColumns any;
+            analytic_kernels(level).first.objects(objects, rays, found);
+            analytic_kernels(level).any.objects(objects, rays, any);
             for (std::size_t i = 0; i < rays.size; ++i) {
                 const FirstMeeting expected = first_of(objects.size(), ray_of(rays, i), meet_one);
                 expect_same(found.first(i), expected, level);
+                ASSERT_EQ(any.is_any(i), expected.is_one()) << simd_name(level);
                 ASSERT_LT(expected.which, 12);
                 met_by_kind[static_cast<std::size_t>(expected.which + 2) % 2] += expected.is_one() ? 1 : 0;
             }
@@ -136,25 +143,64 @@ TEST(AnalyticKernels, EveryLevelMeetsTheFirstTriangle) {
         return std::ranges::find_if(few.planes, [&](const TrianglePlane& plane) { return i < plane.end; });
     };
     const auto meet_one = [&](std::size_t i, const Stretch<double>& ray) {
-        const double reach_mm = largest_coordinate(ray.origin) + few.reach_mm;
-        return meet_in_plane(few.triangles[i], meet_plane(plane_of(i)->height, ray), reach_mm);
+        const PlaneMeeting<double> meeting = meet_plane(plane_of(i)->height, ray);
+        const Vec3d point = ray.origin + meeting.at * ray.direction;
+        const std::array<double, 3> coordinates{point.x, point.y, point.z};
+        const FlatTriangle& triangle = few.triangles[i];
+        return meet_in_plane(triangle.in_plane,
+                             grown_rim(triangle.b1_slope, triangle.b2_slope, few.reach_from(ray.origin)), meeting,
+                             Vec2d{coordinates[plane_of(i)->across[0]], coordinates[plane_of(i)->across[1]]});
     };
     int met = 0;
     for (std::size_t round = 0; round < 400; ++round) {
         const RayColumns rays = some_rays(random, 1 + round % RayColumns::kMost);
         for (const SimdLevel level : available_simd_levels()) {
             MeetingColumns found;
-            analytic_kernels(level).meet_triangles(few, rays, found);
+            MeetingColumns any;
+            analytic_kernels(level).first.triangles(few, rays, found);
+            analytic_kernels(level).any.triangles(few, rays, any);
             for (std::size_t i = 0; i < rays.size; ++i) {
                 const FirstMeeting expected = first_of(few.triangles.size(), ray_of(rays, i), meet_one);
                 ASSERT_LT(expected.which, static_cast<int>(few.triangles.size() / 2));
                 met += expected.is_one() ? 1 : 0;
                 expect_same(found.first(i), expected, level);
+                ASSERT_EQ(any.is_any(i), expected.is_one()) << simd_name(level);
                 expect_same(analytic_kernels(level).meet_first_triangle(few, ray_of(rays, i)), expected, level);
             }
         }
     }
     EXPECT_GT(met, 1000);  // some 1300 by each of the levels that the build has
+}
+
+// At any point of a plane, however it leans, the coordinates say where between the vertices it lies. A gradient along
+// two coordinates is no more than √3 times as steep as one in the plane, and each number has some ten roundings.
+TEST(FewTriangles, CountByTwoCoordinatesOfThePoint) {
+    std::mt19937_64 random(3);
+    std::array<int, 3> by_dropped{};
+    for (int i = 0; i < 1000; ++i) {
+        FewTriangles few{.reach_mm = 10.0};
+        const TriangleSides sides{3.0 * random_direction(random), 2.0 * random_direction(random),
+                                  2.0 * random_direction(random)};
+        const double area2 = length(cross(sides.to_second, sides.to_third));
+        if (area2 < 0.5) {
+            continue;
+        }
+        few.add(sides);
+        const double b1 = uniform(random, -1, 2);
+        const double b2 = uniform(random, -1, 2);
+        const Vec3d point = sides.first + b1 * sides.to_second + b2 * sides.to_third;
+        const std::array<double, 3> coordinates{point.x, point.y, point.z};
+        const auto [u, v] = few.planes.front().across;
+        const auto& [of_b1, of_b2] = few.triangles.front().in_plane;
+        const double most_slope = std::sqrt(3.0) * 2.0 / area2;
+        const double tolerance = 10.0 * 0x1p-53 * few.reach_mm * most_slope;
+        EXPECT_NEAR(of_b1.at({coordinates[u], coordinates[v]}), b1, tolerance);
+        EXPECT_NEAR(of_b2.at({coordinates[u], coordinates[v]}), b2, tolerance);
+        EXPECT_LE(few.triangles.front().b1_slope, most_slope * (1.0 + 1e-12));
+        EXPECT_LE(few.triangles.front().b2_slope, most_slope * (1.0 + 1e-12));
+        ++by_dropped[3 - u - v];
+    }
+    EXPECT_GT(*std::ranges::min_element(by_dropped), 200);
 }
 
 // What shares a plane is met there: beside it, and from a plane that stands off by more than rounding, not.
