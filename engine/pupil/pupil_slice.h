@@ -16,7 +16,7 @@ namespace lensproof::pupil {
 /// The regions of a PupilSlices as plain arrays. All are their own mirror image in x = 0.
 struct PupilSliceTables {
     static constexpr int kPanels = 24;
-    static constexpr int kRadiusSteps = 1024;
+    static constexpr int kRadiusSteps = 4096;
     static constexpr int kAreaSteps = 128;
     static constexpr int kWidthSteps = 512;
     // Of a region, one after the other: its width, then of each column lower and upper y and the area before it.
@@ -24,18 +24,17 @@ struct PupilSliceTables {
     static constexpr int kPerColumn = 3;
     static constexpr int kNumbers = kFirstColumn + kPerColumn * (kPanels + 1);
 
-    int nodes = 0;                               // in radius
-    const double* per_end = nullptr;             // of a slice: 1 / the radius where the light ends, 1/mm
-    const double* fractions = nullptr;           // of a node: its radius over the end
-    const double* per_step = nullptr;            // 1 / the step to the next fraction
-    const std::int32_t* node_below = nullptr;    // for each step in radius, the last node at or below it
-    int nodes_in_step = 0;                       // which begin there, at the most
-    const double* regions = nullptr;             // [slice][node][number]
-    const std::uint8_t* panel_below = nullptr;   // [slice][node][step]: a panel no later than that which each 128th of
-                                                 // the area begins in, between this node and the next
-    const double* panel_fractions = nullptr;     // where the columns stand in a region's width
+    int nodes = 0;                              // in radius
+    const double* per_end = nullptr;            // of a slice: 1 / the radius where the light ends, 1/mm
+    const double* fractions = nullptr;          // of a node: its radius over the end
+    const double* per_step = nullptr;           // 1 / the step to the next fraction
+    const std::int32_t* node_below = nullptr;   // for each step in radius, the last node at or below it: none is within
+    const double* regions = nullptr;            // [slice][node][number]
+    const std::uint8_t* panel_below = nullptr;  // [slice][node][step]: a panel no later than that which each 128th of
+                                                // the area begins in, between this node and the next
+    const double* panel_fractions = nullptr;    // where the columns stand in a region's width
     const std::int32_t* panel_across = nullptr;  // for each step in the width, the last panel that begins no later
-    int panels_in_step = 0;                      // as nodes_in_step
+    const double* next_panel = nullptr;          // and where the next begins
     const double* per_panel = nullptr;           // 1 / the fraction that each panel has of the width
     Disc disc;                                   // that the defensive fraction is drawn from
     double disc_radius2 = 0.0;                   // of it, mm²
@@ -65,9 +64,7 @@ class PupilSlice {
         const T fraction_or_none = radius * look_up(tables.per_end, slice);
         is_lit_ = fraction_or_none < T(1.0 + 0x1p-52);
         const T fraction = select(is_lit_, fraction_or_none, T(0));
-        const T node =
-            moved_on(look_up(tables.node_below, fraction * T(PupilSliceTables::kRadiusSteps)), tables.nodes_in_step,
-                     [&](const T& at) { return look_up(tables.fractions + 1, at) < fraction; });
+        const T node = look_up(tables.node_below, fraction * T(PupilSliceTables::kRadiusSteps));
         const Index<T> node_index(node);
         const T t = (fraction - node_index.look_up(tables.fractions)) * node_index.look_up(tables.per_step);
         outer_weight_ = select(t > T(0), select(t < T(1), t, T(1)), T(0));
@@ -123,12 +120,10 @@ class PupilSlice {
         const T fraction_or_beyond = select(x < T(0), -x, x) / select(is_lit_, width_, T(1));
         const Mask is_across = is_lit_ && fraction_or_beyond <= T(1);
         const T fraction = select(is_across, fraction_or_beyond, T(0));
-        const auto is_beyond = [&](const T& at) {
-            return at + T(1) < T(PupilSliceTables::kPanels) && look_up(tables_.panel_fractions + 1, at) <= fraction;
-        };
+        const Index<T> step(fraction * T(PupilSliceTables::kWidthSteps));
+        const T no_later = step.look_up(tables_.panel_across);
         const PupilPanel<T> found =
-            panel_at(moved_on(look_up(tables_.panel_across, fraction * T(PupilSliceTables::kWidthSteps)),
-                              tables_.panels_in_step, is_beyond));
+            panel_at(select(step.look_up(tables_.next_panel) <= fraction, no_later + T(1), no_later));
         const T t = (fraction - found.fraction) * found.per_fraction;
         return is_across && !(y < found.lower_at(t)) && !(y > found.upper_at(t));
     }
@@ -150,19 +145,6 @@ class PupilSlice {
     static constexpr int kUpper = kLower + 1;
     static constexpr int kArea = kLower + 2;
     static constexpr int kPerColumn = PupilSliceTables::kPerColumn;
-
-    /// The first from `at` on that a number does not lie beyond, `most` steps away at the most. One step is taken
-    /// without asking whether any lane needs it, which could not be foreseen.
-    template <class IsBeyond>
-    static constexpr T moved_on(T at, int most, const IsBeyond& is_beyond) {
-        Mask moves = is_beyond(at);
-        at = select(moves, at + T(1), at);
-        while (most > 1 && any(moves)) {
-            moves = is_beyond(at);
-            at = select(moves, at + T(1), at);
-        }
-        return at;
-    }
 
     /// A number of a column of the mean; of column 0, number 0, the width.
     [[nodiscard]] constexpr T mean(const Index<T>& column, int number) const {

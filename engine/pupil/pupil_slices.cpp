@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "engine/base/gather.h"
+#include "engine/base/infinity.h"
 
 namespace lensproof::pupil {
 
@@ -15,15 +16,6 @@ constexpr int kMostSlices = 256;  // of some 30 kB
 
 double position_of(int slice, int slices) {
     return slices > 1 ? slice / (slices - 1.0) : 0.0;
-}
-
-/// Of what begins within any one step.
-int most_within_a_step(const std::vector<std::int32_t>& last_by_step) {
-    int most = 0;
-    for (std::size_t i = 1; i < last_by_step.size(); ++i) {
-        most = std::max(most, last_by_step[i] - last_by_step[i - 1]);
-    }
-    return most;
 }
 
 }  // namespace
@@ -52,7 +44,9 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
     panel_below_.insert(panel_below_.end(), kBytesBeyond, 0);
     const PupilFractions& fractions = pupil_fractions(nodes.symmetry);
     for (int i = 0; i <= PupilSliceTables::kWidthSteps; ++i) {
-        panel_across_.push_back(fractions.panel(static_cast<double>(i) / PupilSliceTables::kWidthSteps));
+        const int panel = fractions.panel(static_cast<double>(i) / PupilSliceTables::kWidthSteps);
+        panel_across_.push_back(panel);
+        next_panel_.push_back(panel + 1 < kPupilPanels ? fractions.at[panel + 1] : kInfinity);
     }
     const Disc& disc = map.regions().disc();
     const double defensive_fraction = map.regions().defensive_fraction();
@@ -61,12 +55,11 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
                .fractions = nodes.fractions.data(),
                .per_step = per_step_.data(),
                .node_below = node_below_.data(),
-               .nodes_in_step = most_within_a_step(node_below_),
                .regions = regions_.data(),
                .panel_below = panel_below_.data(),
                .panel_fractions = fractions.at.data(),
                .panel_across = panel_across_.data(),
-               .panels_in_step = most_within_a_step(panel_across_),
+               .next_panel = next_panel_.data(),
                .per_panel = fractions.per_width.data(),
                .disc = disc,
                .disc_radius2 = disc.radius * disc.radius,

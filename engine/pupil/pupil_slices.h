@@ -58,6 +58,7 @@ class PupilSlices {
     std::vector<double> regions_;
     std::vector<std::uint8_t> panel_below_;
     std::vector<std::int32_t> panel_across_;
+    std::vector<double> next_panel_;
     PupilSliceTables tables_;
 };
 

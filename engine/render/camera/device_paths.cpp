@@ -21,6 +21,7 @@ DeviceCamera<T>::DeviceCamera(const device::Device& device, const optics::Spectr
     const auto panel_below = add(tables_.panel_below, sizes.panel_below);
     const auto panel_fractions = add(tables_.panel_fractions, pupil::PupilSliceTables::kPanels + 1);
     const auto panel_across = add(tables_.panel_across, sizes.panel_across);
+    const auto next_panel = add(tables_.next_panel, sizes.panel_across);
     const auto per_panel = add(tables_.per_panel, pupil::PupilSliceTables::kPanels);
     const auto sobol_points = add(&sampler_detail::kDigitPoints, 1);
     parcel_.allocate(device);
@@ -33,6 +34,7 @@ DeviceCamera<T>::DeviceCamera(const device::Device& device, const optics::Spectr
     tables_.panel_below = parcel_.address(panel_below);
     tables_.panel_fractions = parcel_.address(panel_fractions);
     tables_.panel_across = parcel_.address(panel_across);
+    tables_.next_panel = parcel_.address(next_panel);
     tables_.per_panel = parcel_.address(per_panel);
     sobol_points_ = parcel_.address(sobol_points);
 }
