@@ -1,28 +1,40 @@
 # A library that is loaded when the first of its functions is called, not when a program starts.
 #
-#   lensproof_late_library(NAME IMPORTED PATTERN)
+#   lensproof_late_library(NAME IMPORTED PATTERN [WITH IMPORTED…])
 #
-# makes NAME, to be linked in place of the imported library: for each function of its whose mangled name matches PATTERN a
-# jump, which at first leads to what loads the library and looks the function up, and from then on to the function, as
-# the linker's own tables do for what is loaded at the start. Only functions: a class that derives from one of the
-# library's needs -fno-rtti. On other processors than x86-64, and under the sanitizers, whose checks look at type
-# information, NAME is the library itself.
+# makes NAME, to be linked in place of the imported library and of those WITH it, which it brings along: for each function
+# of theirs whose mangled name matches PATTERN a jump, which at first leads to what loads the library and looks the
+# function up, and from then on to the function, as the linker's own tables do for what is loaded at the start; for data,
+# such as tables of virtual functions, room into which they are copied when the library is loaded. A class that derives
+# from one of the library's needs -fno-rtti. On other processors than x86-64, and under the sanitizers, whose checks look
+# at type information, NAME is the libraries themselves.
 function(lensproof_late_library name imported pattern)
+    cmake_parse_arguments(ARG "" "" "WITH" ${ARGN})
     add_library(${name} INTERFACE)
     if(LENSPROOF_SANITIZE OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$" OR NOT UNIX OR APPLE)
-        target_link_libraries(${name} INTERFACE ${imported})
+        target_link_libraries(${name} INTERFACE ${imported} ${ARG_WITH})
         return()
     endif()
     get_target_property(configurations ${imported} IMPORTED_CONFIGURATIONS)
     list(GET configurations 0 configuration)
-    get_target_property(file ${imported} IMPORTED_LOCATION_${configuration})
     get_target_property(soname ${imported} IMPORTED_SONAME_${configuration})
-    get_target_property(others ${imported} INTERFACE_LINK_LIBRARIES)
     get_target_property(includes ${imported} INTERFACE_INCLUDE_DIRECTORIES)
-    execute_process(COMMAND ${CMAKE_NM} -D --defined-only ${file} OUTPUT_VARIABLE table COMMAND_ERROR_IS_FATAL ANY)
+    set(others)
+    set(table)
+    foreach(library IN LISTS imported ARG_WITH)
+        get_target_property(file ${library} IMPORTED_LOCATION_${configuration})
+        get_target_property(needs ${library} INTERFACE_LINK_LIBRARIES)
+        list(APPEND others ${needs})
+        execute_process(COMMAND ${CMAKE_NM} -D -S --defined-only ${file} OUTPUT_VARIABLE symbols
+                        COMMAND_ERROR_IS_FATAL ANY)
+        string(APPEND table "${symbols}")
+    endforeach()
+    list(REMOVE_ITEM others ${imported} ${ARG_WITH})
     string(REGEX MATCHALL " [TW] [^\n@]+" symbols "${table}")
     list(TRANSFORM symbols REPLACE "^ [TW] " "")
     list(FILTER symbols INCLUDE REGEX "${pattern}")
+    list(REMOVE_DUPLICATES symbols)
+    string(REGEX MATCHALL "[0-9a-f]+ [BDRV] [^\n@]+" sized_data "${table}")
     set(jumps)
     set(names)
     set(index 0)
@@ -32,10 +44,26 @@ function(lensproof_late_library name imported pattern)
         string(APPEND names "    \"${symbol}\",\n")
         math(EXPR index "${index} + 1")
     endforeach()
+    set(data)
+    set(copies)
+    set(index 0)
+    foreach(sized IN LISTS sized_data)
+        string(REGEX MATCH "^([0-9a-f]+) . (.*)$" parts "${sized}")
+        set(symbol "${CMAKE_MATCH_2}")
+        math(EXPR size "0x${CMAKE_MATCH_1}")
+        if(NOT symbol MATCHES "${pattern}")
+            continue()
+        endif()
+        string(APPEND data "alignas(32) [[gnu::visibility(\"hidden\")]] char data_${index}[${size}] asm(\"${symbol}\");\n")
+        string(APPEND copies "    {\"${symbol}\", data_${index}, ${size}},\n")
+        math(EXPR index "${index} + 1")
+    endforeach()
     set(LATE ${name})
     set(SONAME ${soname})
     set(JUMPS "${jumps}")
     set(NAMES "${names}")
+    set(DATA "${data}")
+    set(COPIES "${copies}")
     configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/late_library.cpp.in ${CMAKE_BINARY_DIR}/generated/${name}.cpp @ONLY)
     add_library(${name}_jumps STATIC ${CMAKE_BINARY_DIR}/generated/${name}.cpp)
     set_target_properties(${name}_jumps PROPERTIES CXX_CLANG_TIDY "" POSITION_INDEPENDENT_CODE ON)

@@ -7,6 +7,7 @@
 #include "engine/analysis/spot.h"
 #include "engine/analysis/wavefront.h"
 #include "engine/base/angle.h"
+#include "engine/base/parallel.h"
 
 namespace lensproof::analysis {
 
@@ -96,7 +97,7 @@ optics::Lens with_image_plane(optics::Lens lens, double object_distance, double 
     return lens;
 }
 
-LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& settings) {
+LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& settings, int threads) {
     const ColourOfLens reference(lens, settings.reference_wavelength_nm);
     const double from_front = distance_from_front(lens, settings.object_distance);
     std::vector<AnalysedColour> colours;
@@ -122,13 +123,14 @@ LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& sett
         analysis.chief_ray = ray_at_surfaces(reference.lens, *chief);
     }
     const double distortion_z = distortion_plane(reference.lens, settings.object_distance);
-    for (const double field : settings.fields_deg) {
+    analysis.fields.resize(settings.fields_deg.size() * colours.size());
+    parallel_for(static_cast<int>(analysis.fields.size()), threads, [&](int i) {
+        const double field = settings.fields_deg[static_cast<std::size_t>(i) / colours.size()];
         const auto bundle = optics::field_bundle(reference.chief_rays, field * kDegree, settings.object_distance);
-        for (const AnalysedColour& colour : colours) {
-            analysis.fields.push_back(
-                analyze_field(field, colour, bundle, lens.projection, distortion_z, settings.rings));
-        }
-    }
+        analysis.fields[static_cast<std::size_t>(i)] =
+            analyze_field(field, colours[static_cast<std::size_t>(i) % colours.size()], bundle, lens.projection,
+                          distortion_z, settings.rings);
+    });
     return analysis;
 }
 

@@ -62,8 +62,9 @@ struct LensAnalysis {
     std::vector<FieldAnalysis> fields;           // by field, and for each by wavelength
 };
 
-/// Throws InputError for a wavelength that a glass's formula does not cover, as does what follows.
-LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& settings);
+/// Throws InputError for a wavelength that a glass's formula does not cover, as does what follows. `threads`: as in
+/// `parallel_for`.
+LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& settings, int threads = 1);
 
 /// The settings' fields with all of their wavelengths, of equal weight each: what focus, PSF and MTF are judged by.
 /// Nothing for a field whose object has no chief ray, or no light that passes.

@@ -89,7 +89,7 @@ int run_analyze(const AnalyzeOptions& options) {
         check_output_name(std::filesystem::path(options.plots_folder) / "curves.json");
     }
     const auto [prescription, lens, settings] = read_analysed_lens(options.lens);
-    const analysis::LensAnalysis analysis = analysis::analyze_lens(lens, settings);
+    const analysis::LensAnalysis analysis = analysis::analyze_lens(lens, settings, options.common.threads);
     const std::optional<analysis::VeilingGlare> glare = asked_veiling_glare(options, lens, settings);
     if (!options.plots_folder.empty()) {
         write_analysis_plots(options, prescription, lens, settings, analysis);
