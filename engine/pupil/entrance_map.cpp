@@ -75,6 +75,13 @@ double EntranceMap::pdf(const EntranceBeam& beam, double band_position, Vec2d of
     return regions_.pdf(place_of(beam.axis.direction), band_position, offset);
 }
 
+void EntranceMap::pdfs(const EntranceBeam& beam, std::span<const double> band_positions, Vec2d offset,
+                       std::span<double> found) const {
+    const Vec2d place = place_of(beam.axis.direction);
+    std::ranges::transform(band_positions, found.begin(),
+                           [&](double position) { return regions_.pdf(place, position, offset); });
+}
+
 double EntranceMap::region_area(const EntranceBeam& beam, double band_position) const {
     return regions_.area(place_of(beam.axis.direction), band_position);
 }

@@ -1,6 +1,7 @@
 // engine/pupil/entrance_map.h — through which part of the front element light from each direction enters a lens.
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,9 @@ class EntranceMap {
 
     /// The pdf that `sample` draws an offset with, 1/mm²; 0 outside the disc and the region.
     [[nodiscard]] double pdf(const EntranceBeam& beam, double band_position, Vec2d offset) const;
+    /// The same at several positions, into as many of `found`.
+    void pdfs(const EntranceBeam& beam, std::span<const double> band_positions, Vec2d offset,
+              std::span<double> found) const;
 
     /// The area that is drawn from but for the defensive fraction, mm²; 0 where no light was found.
     [[nodiscard]] double region_area(const EntranceBeam& beam, double band_position) const;

@@ -123,17 +123,18 @@ scene::Scene under(const spectral::SpectralGrid& grid) {
 
 using MakeScene = scene::Scene (*)(const spectral::SpectralGrid&);
 
-void time_camera_paths(benchmark::State& state, render::LensModel model, MakeScene make_scene) {
+void time_paths(benchmark::State& state, const std::string& integrator, render::LensModel model, MakeScene make_scene) {
+    const bool meets_light_paths = integrator != "camera";
     const render::Camera camera({.lens = "double-gauss-tronnier",
                                  .f_number = 2.0,
                                  .focus_distance_mm = 2000.0,
                                  .sensor = kSensor,
                                  .response = "cie-1931",
                                  .model = model},
-                                {.layers = 8, .strata_per_layer = 8}, {}, {});
+                                {.layers = 8, .strata_per_layer = 8}, {}, {}, meets_light_paths);
     const render::World world = make_scene(camera.grid());
     const render::Render render =
-        render::integrator_named("camera").render({.world = &world, .camera = &camera, .paths = kPaths});
+        render::integrator_named(integrator).render({.world = &world, .camera = &camera, .paths = kPaths});
     render::Film film(render.film);
     render::FilmTile tile(film.layout());
     const auto tiles = render::film_tiles(kWidth, kHeight);
@@ -163,12 +164,16 @@ void register_scene_benchmarks() {
     for (const render::LensModel model :
          {exact, exact_float, polynomial, paraxial, thin_lens_profile, thin_lens, pinhole_profile, pinhole}) {
         benchmark::RegisterBenchmark(("scene/" + render::name_of(model)).c_str(), [model](benchmark::State& state) {
-            time_camera_paths(state, model, lit_by_lamp);
+            time_paths(state, "camera", model, lit_by_lamp);
         })->Unit(benchmark::kMillisecond);
     }
     const auto add = [](const char* name, MakeScene make_scene) {
-        benchmark::RegisterBenchmark(name, time_camera_paths, exact, make_scene)->Unit(benchmark::kMillisecond);
+        benchmark::RegisterBenchmark(name, time_paths, "camera", exact, make_scene)->Unit(benchmark::kMillisecond);
     };
+    for (const std::string integrator : {"light", "both"}) {
+        benchmark::RegisterBenchmark(("scene/" + integrator).c_str(), time_paths, integrator, exact, lit_by_lamp)
+            ->Unit(benchmark::kMillisecond);
+    }
     add("scene/sky/even", under<wall_and_sphere, even_sky>);
     add("scene/sky/noise", under<wall_and_sphere, noise<>>);
     add("scene/sky/small_noise", under<wall_and_sphere, noise<64>>);

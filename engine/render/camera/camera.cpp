@@ -137,6 +137,17 @@ FilmImportance Camera::importance(const Ray<double>& ray, const spectral::PathWa
     return std::visit([&](const auto& optics) { return optics.importance(sensor(), ray, path); }, optics_);
 }
 
+void Camera::importances(std::span<const Ray<double>> rays, std::span<const spectral::PathWavelengths> paths,
+                         std::span<FilmImportance> found) const {
+    if (const auto* exact = std::get_if<ExactCamera>(&optics_)) {
+        exact->importances(sensor(), rays, paths, found);
+        return;
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        found[i] = importance(rays[i], paths[i]);
+    }
+}
+
 LightOrigin Camera::in_lens_space(const LightOrigin& from) const {
     return {scene::camera_to_lens(from.is_far ? transposed_times(pose_.linear, from.at) : point_before(pose_, from.at)),
             from.is_far};

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -84,6 +85,9 @@ class Camera {
 
     [[nodiscard]] CameraPaths paths(std::uint64_t seed, PathCarry carry) const;
     [[nodiscard]] FilmImportance importance(const Ray<double>& ray, const spectral::PathWavelengths& path) const;
+    /// Of many rays, a path each, into as many of `found`.
+    void importances(std::span<const Ray<double>> rays, std::span<const spectral::PathWavelengths> paths,
+                     std::span<FilmImportance> found) const;
     [[nodiscard]] std::optional<LensSample> sample(const LightOrigin& from, const spectral::PathWavelengths& path,
                                                    double u, double v) const;
     [[nodiscard]] PathPdf pdf(const LightOrigin& from, const Ray<double>& outwards,

@@ -1,5 +1,6 @@
 #include "engine/render/camera/exact_camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -117,8 +118,11 @@ PathPdf ExactCamera::beam_pdf(const pupil::EntranceBeam& beam, Vec2d offset,
                               const spectral::PathWavelengths& path) const {
     const pupil::EntranceBeam far_beam = entrance_->beam(beam.axis.direction);
     const double mm2 = std::isfinite(beam.distance) ? 1.0 / beam.solid_angle_per_mm2(offset) : 1.0;
-    return over_heroes(
-        [&](std::size_t i) { return mm2 * entrance_->pdf(far_beam, band_position(path.index[i]), offset); });
+    std::array<double, spectral::kWavelengthsPerPath> positions{};
+    std::ranges::transform(path.index, positions.begin(), [&](std::uint16_t index) { return band_position(index); });
+    std::array<double, spectral::kWavelengthsPerPath> pdfs{};
+    entrance_->pdfs(far_beam, positions, offset, pdfs);
+    return over_heroes([&](std::size_t i) { return mm2 * pdfs[i]; });
 }
 
 template <class T>
@@ -130,8 +134,9 @@ FilmImportance ExactCamera::traced_importance(const optics::SpectralLens<T>& len
         const optics::TraceLens<T>& at = lens.at(path.index[i]);
         const optics::TracedRay<T> traced = optics::trace<optics::Direction::forward>(at, optics::convert_ray<T>(ray));
         if (traced.status == optics::RayStatus::ok) {
-            const FilmMeeting film =
-                meet_film(slices_, lens_.at(0).image_z, path.index[i], optics::convert_ray<double>(traced.ray));
+            const FilmMeeting film = meet_film(slices_, lens.at(0).image_z, path.index[i],
+                                               {optics::convert_vector<double>(traced.ray.origin),
+                                                optics::convert_vector<double>(traced.ray.direction)});
             found.at_px[i] = sensor.pixel(film.point);
             found.transmittance[i] = clear * traced.transmittance;
             found.pdf[i] = film.pdf;
@@ -143,6 +148,49 @@ FilmImportance ExactCamera::traced_importance(const optics::SpectralLens<T>& len
 FilmImportance ExactCamera::importance(const Sensor& sensor, const Ray<double>& ray,
                                        const spectral::PathWavelengths& path) const {
     return in_float_ ? traced_importance(*in_float_, sensor, ray, path) : traced_importance(lens_, sensor, ray, path);
+}
+
+template <class T>
+void ExactCamera::trace_importances(const optics::SpectralLens<T>& lens, const Sensor& sensor,
+                                    std::span<const Ray<double>> rays, std::span<const spectral::PathWavelengths> paths,
+                                    std::span<FilmImportance> found) const {
+    constexpr std::size_t kMost = kSharedChunk;
+    optics::RayBatch<T> traced(kSharedChunk);
+    FilmMeetings meetings;
+    for (std::size_t first = 0; first < rays.size(); first += kMost) {
+        const std::size_t count = std::min(kMost, rays.size() - first);
+        traced.size = static_cast<int>(count);
+        for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
+            for (std::size_t i = 0; i < count; ++i) {
+                traced.set(static_cast<int>(i), optics::convert_ray<T>(rays[first + i]));
+                traced.wavelength[i] = paths[first + i].index[m];
+            }
+            optics::trace_batch<optics::Direction::forward>(lens, traced, {.carry = optics::Carry::transmittance});
+            meet_film(lens, slices_, path_kernels({}), traced, meetings);
+            for (std::size_t i = 0; i < count; ++i) {
+                FilmImportance& of = found[first + i];
+                const bool arrives = meetings.transmittance[i] >= 0.0;
+                of.at_px[m] = arrives ? sensor.pixel(Vec2d{meetings.film_x[i], meetings.film_y[i]}) : Vec2d{};
+                of.transmittance[m] = arrives ? meetings.transmittance[i] : 0.0;
+                of.pdf[m] = arrives ? meetings.pupil_pdf[i] * meetings.per_etendue[i] : 0.0;
+            }
+        }
+    }
+    for (std::size_t i = 0; dust_ && i < rays.size(); ++i) {
+        const double clear = dust_->clear(rays[i], lens_.at().front());
+        for (double& transmittance : found[i].transmittance) {
+            transmittance = clear * transmittance;
+        }
+    }
+}
+
+void ExactCamera::importances(const Sensor& sensor, std::span<const Ray<double>> rays,
+                              std::span<const spectral::PathWavelengths> paths, std::span<FilmImportance> found) const {
+    if (in_float_) {
+        trace_importances(*in_float_, sensor, rays, paths, found);
+    } else {
+        trace_importances(lens_, sensor, rays, paths, found);
+    }
 }
 
 std::optional<LensSample> ExactCamera::sample(const LightOrigin& from, const spectral::PathWavelengths& path, double u,

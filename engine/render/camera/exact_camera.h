@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -65,6 +66,9 @@ class ExactCamera {
 
     [[nodiscard]] FilmImportance importance(const Sensor& sensor, const Ray<double>& ray,
                                             const spectral::PathWavelengths& path) const;
+    /// Of many rays in packets, with the same bits.
+    void importances(const Sensor& sensor, std::span<const Ray<double>> rays,
+                     std::span<const spectral::PathWavelengths> paths, std::span<FilmImportance> found) const;
     [[nodiscard]] std::optional<LensSample> sample(const LightOrigin& from, const spectral::PathWavelengths& path,
                                                    double u, double v) const;
     [[nodiscard]] PathPdf pdf(const LightOrigin& from, const Ray<double>& outwards,
@@ -86,6 +90,9 @@ class ExactCamera {
     template <class T>
     [[nodiscard]] FilmImportance traced_importance(const optics::SpectralLens<T>& lens, const Sensor& sensor,
                                                    const Ray<double>& ray, const spectral::PathWavelengths& path) const;
+    template <class T>
+    void trace_importances(const optics::SpectralLens<T>& lens, const Sensor& sensor, std::span<const Ray<double>> rays,
+                           std::span<const spectral::PathWavelengths> paths, std::span<FilmImportance> found) const;
 
     std::shared_ptr<device::SharedDevice> device_;
     optics::SpectralLens<double> lens_;

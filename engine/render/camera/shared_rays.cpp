@@ -14,6 +14,36 @@ FilmMeeting meet_film(const pupil::PupilSlices& pupil, double film_z, int slice,
 }
 
 template <class T>
+void meet_film(const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil, const PathKernels& kernels,
+               const optics::RayBatch<T>& behind, FilmMeetings& meetings) {
+    const double film_z = lens.at(0).image_z;
+    const double pupil_z = pupil.map().plane_z();
+    if constexpr (std::is_same_v<T, double>) {
+        kernels.cross_film(film_z, pupil_z, behind, meetings);
+    } else {
+        kernels.cross_film_in_float(film_z, pupil_z, behind, meetings);
+    }
+    const pupil::PupilSliceTables* tables = pupil.tables();
+    if (tables != nullptr) {
+        kernels.weigh_pupil_points(*tables, behind.wavelength.data(), behind.size, meetings);
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(behind.size); ++i) {
+        const bool arrives = behind.status[i] == optics::RayStatus::ok;
+        meetings.transmittance[i] = arrives ? static_cast<double>(behind.transmittance[i]) : -1.0;
+        if (tables == nullptr) {
+            meetings.pupil_pdf[i] = arrives ? pupil.pdf({meetings.film_x[i], meetings.film_y[i]}, behind.wavelength[i],
+                                                        {meetings.pupil_x[i], meetings.pupil_y[i]})
+                                            : 0.0;
+        }
+    }
+}
+
+template void meet_film(const optics::SpectralLens<float>& lens, const pupil::PupilSlices& pupil,
+                        const PathKernels& kernels, const optics::RayBatch<float>& behind, FilmMeetings& meetings);
+template void meet_film(const optics::SpectralLens<double>& lens, const pupil::PupilSlices& pupil,
+                        const PathKernels& kernels, const optics::RayBatch<double>& behind, FilmMeetings& meetings);
+
+template <class T>
 BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
                                     const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box,
                                     std::optional<SimdLevel> level)
@@ -95,31 +125,7 @@ void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first)
             rays_.wavelength[i] = grid_.path(paths.wavelength[first + i]).index[m];
         }
         optics::trace_batch<optics::Direction::forward>(*lens_, rays_, tracing_);
-        weigh_meetings(rays_, chunk_.others[m - 1]);
-    }
-}
-
-template <class T>
-void BasicSharedRays<T>::weigh_meetings(const optics::RayBatch<T>& rays, FilmMeetings& meetings) const {
-    const double film_z = lens_->at(0).image_z;
-    const double pupil_z = pupil_->map().plane_z();
-    if constexpr (std::is_same_v<T, double>) {
-        kernels_->cross_film(film_z, pupil_z, rays, meetings);
-    } else {
-        kernels_->cross_film_in_float(film_z, pupil_z, rays, meetings);
-    }
-    const pupil::PupilSliceTables* tables = pupil_->tables();
-    if (tables != nullptr) {
-        kernels_->weigh_pupil_points(*tables, rays.wavelength.data(), rays.size, meetings);
-    }
-    for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
-        const bool arrives = rays.status[i] == optics::RayStatus::ok;
-        meetings.transmittance[i] = arrives ? static_cast<double>(rays.transmittance[i]) : -1.0;
-        if (tables == nullptr) {
-            meetings.pupil_pdf[i] = arrives ? pupil_->pdf({meetings.film_x[i], meetings.film_y[i]}, rays.wavelength[i],
-                                                          {meetings.pupil_x[i], meetings.pupil_y[i]})
-                                            : 0.0;
-        }
+        meet_film(*lens_, *pupil_, *kernels_, rays_, chunk_.others[m - 1]);
     }
 }
 

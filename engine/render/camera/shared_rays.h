@@ -17,6 +17,12 @@ struct FilmMeeting {
 };
 FilmMeeting meet_film(const pupil::PupilSlices& pupil, double film_z, int slice, const Ray<double>& behind);
 
+/// The same of rays as `trace_batch` left them behind `lens`, kSharedChunk at the most; and what of their light
+/// arrives.
+template <class T>
+void meet_film(const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil, const PathKernels& kernels,
+               const optics::RayBatch<T>& behind, FilmMeetings& meetings);
+
 /// Camera paths are drawn for their hero; outside the lens the ray serves the other wavelengths too, each of which
 /// reaches it by its own path through the glass, from its own point on the film. Of the four techniques "draw the ray
 /// as wavelength m's hero, in this pixel" each could have drawn the ray with a pdf p_m of its own, 0 where its film
@@ -51,7 +57,6 @@ class BasicSharedRays {
     void take_heroes(const CameraPathBuffer& paths, std::size_t first);
     /// Each of the others' rays, and where it ends.
     void trace(const CameraPathBuffer& paths, std::size_t first);
-    void weigh_meetings(const optics::RayBatch<T>& rays, FilmMeetings& meetings) const;
     void give_weights(CameraPathBuffer& paths, std::size_t first) const;
 
     spectral::SpectralGrid grid_;

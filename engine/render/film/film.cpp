@@ -162,8 +162,8 @@ void FilmTile::add_features(std::size_t pixel, const PixelFeatures& features) {
 }
 
 void FilmTile::splat(const std::array<Vec2d, 4>& at_px, std::span<const std::uint16_t, 4> strata,
-                     std::span<const float, 4> irradiance) {
-    Splat splat{.at_px = at_px, .path = light_paths_};
+                     std::span<const float, 4> irradiance, std::uint64_t light_path) {
+    Splat splat{.at_px = at_px, .path = light_path};
     bool is_seen = false;
     for (std::size_t i = 0; i < strata.size(); ++i) {
         splat.irradiance[i] = static_cast<float>(kept_fraction_) * irradiance[i];

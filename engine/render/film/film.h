@@ -115,16 +115,23 @@ class FilmTile {
     /// number is not finite.
     void add_features(std::size_t pixel, const PixelFeatures& features);
 
-    /// Says that a light path begins, to be told of those that bring nothing too: the splats up to the next one are
-    /// its, and count together for the variance.
+    /// Says that a light path begins, to be told of those that bring nothing too. Its splats count together for the
+    /// variance.
     void begin_light_path() { ++light_paths_; }
+    /// The number of the one that began last.
+    [[nodiscard]] std::uint64_t light_path() const { return light_paths_; }
 
     /// Light at any point of the film, of the tile or not: the power that one light path brings there over the area of
     /// a pixel, W·m⁻²·nm⁻¹, the mean over the path's wavelengths as above. Each wavelength has its own point, in pixel
     /// coordinates; points outside the film count too, if the filter of a pixel reaches them. A splat with a number
     /// that is not finite is left out and counted.
     void splat(const std::array<Vec2d, 4>& at_px, std::span<const std::uint16_t, 4> strata,
-               std::span<const float, 4> irradiance);
+               std::span<const float, 4> irradiance) {
+        splat(at_px, strata, irradiance, light_paths_);
+    }
+    /// The same of one that began before; of several in their order.
+    void splat(const std::array<Vec2d, 4>& at_px, std::span<const std::uint16_t, 4> strata,
+               std::span<const float, 4> irradiance, std::uint64_t light_path);
 
     /// Says that all samples that the tile was loaded for are taken.
     void finish();

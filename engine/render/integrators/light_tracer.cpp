@@ -1,5 +1,8 @@
 #include "engine/render/integrators/light_tracer.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "engine/render/integrators/light_walk.h"
 
 namespace lensproof::render {
@@ -16,20 +19,29 @@ class ImagedEntrance {
 
     explicit ImagedEntrance(const Camera& camera) : camera_(&camera) {}
 
-    [[nodiscard]] std::optional<Entry> draw(const LightOrigin& from, const spectral::PathWavelengths& path,
-                                            bool is_hero_alone, PathSampler& numbers) const {
+    [[nodiscard]] std::optional<LensSample> aim(const LightOrigin& from, const spectral::PathWavelengths& path,
+                                                PathSampler& numbers) const {
         const auto u = numbers.next();
-        const auto in = camera_->sample(from, path, u[0], u[1]);
-        if (!in) {
-            return std::nullopt;
+        return camera_->sample(from, path, u[0], u[1]);
+    }
+
+    /// Calls enter(i, entry) for each of as many.
+    template <class Enter>
+    void arrive(std::span<const LensSample> aims, std::span<const LightArrival> arrivals, const Enter& enter) const {
+        std::vector<Ray<double>> rays;
+        std::ranges::transform(aims, std::back_inserter(rays), &LensSample::ray);
+        std::vector<spectral::PathWavelengths> paths;
+        std::ranges::transform(arrivals, std::back_inserter(paths), &LightArrival::path);
+        std::vector<FilmImportance> films(aims.size());
+        camera_->importances(rays, paths, films);
+        for (std::size_t i = 0; i < aims.size(); ++i) {
+            enter(i, Entry{{.direction = aims[i].direction,
+                            .end = aims[i].end,
+                            .at_px = films[i].at_px,
+                            .weight = films[i].transmittance,
+                            .pdf = arrivals[i].is_hero_alone ? aims[i].pdf.hero : aims[i].pdf.shared},
+                           films[i]});
         }
-        const FilmImportance film = camera_->importance(in->ray, path);
-        return Entry{{.direction = in->direction,
-                      .end = in->end,
-                      .at_px = film.at_px,
-                      .weight = film.transmittance,
-                      .pdf = is_hero_alone ? in->pdf.hero : in->pdf.shared},
-                     film};
     }
 
   protected:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "engine/base/infinity.h"
 #include "engine/render/integrators/mis_weight.h"
@@ -26,26 +27,132 @@ enum class LightPathsKept {
     beside_mirrored_camera_paths,
 };
 
-/// One light path: from each of its points it joins the camera, whose film it reaches as `entrance` draws.
+/// What goes along a ray into the camera: an intensity from a point, from far off an irradiance; the pdfs of the other
+/// techniques to make the path (LightMisWeight); and what has to be free for it.
+struct LightCarried {
+    spectral::SpectralSample light;
+    double others = 0.0;
+    scene::Segment segment;
+};
+
+/// A light path's last segment, at the path's wavelengths: one path of those that the tile was told of.
+struct LightArrival {
+    LightCarried carried;
+    spectral::PathWavelengths path;
+    bool is_hero_alone = false;
+    bool is_far = false;
+    std::uint64_t light_path = 0;
+};
+
+/// Where the light of a tile's light paths lands on the film, as `entrance` says.
+///
+/// An entrance says at once what becomes of light (`draw`, stray/entry.h), or it says where a ray goes in and with
+/// which pdf (`aim`), and of many together what becomes of them (`arrive`): these wait for each other, and what they
+/// meet between light and camera is asked for together, too.
 ///
 /// An entrance that says `mis_weight(entry, wavelength, others, is_hero_alone)` is one of two ways to make these paths,
-/// the other being camera paths. One that says `meet` is met by chance, too: behind a mirror or smooth glass, from
-/// where no ray can be drawn.
+/// the other being camera paths.
+template <class Entrance>
+class LightLanding {
+  public:
+    LightLanding(const View& view, const Entrance& entrance, FilmTile& tile)
+        : scene_(view.scene()),
+          entrance_(entrance),
+          tile_(tile),
+          pixel_m2_(1e-6 * view.camera->sensor().pixel_pitch_mm * view.camera->sensor().pixel_pitch_mm) {}
+
+    static constexpr bool kIsAimed = requires(const Entrance& entrance, const LightOrigin& from,
+                                              const spectral::PathWavelengths& path, PathSampler& numbers) {
+        entrance.aim(from, path, numbers);
+    };
+    static constexpr bool kIsWeighed = requires(const Entrance& entrance, const typename Entrance::Entry& entry) {
+        entrance.mis_weight(entry, std::size_t{0}, 0.0, false);
+    };
+
+    /// The light path that follows began.
+    void begin_path() { tile_.begin_light_path(); }
+    [[nodiscard]] std::uint64_t path() const { return tile_.light_path(); }
+
+    void land(const typename Entrance::Entry& entry, const LightArrival& of) {
+        const double to_irradiance = (of.is_far ? kSquareMetresPerSquareMm : 1.0) / (entry.pdf * pixel_m2_);
+        std::array<float, spectral::kWavelengthsPerPath> irradiance{};
+        for (std::size_t i = 0; i < irradiance.size(); ++i) {
+            if (entry.weight[i] > 0.0) {
+                double arrives = to_irradiance * entry.weight[i] * of.carried.light[i];
+                if constexpr (kIsWeighed) {
+                    arrives *= entrance_.mis_weight(entry, i, of.carried.others, of.is_hero_alone);
+                }
+                irradiance[i] = static_cast<float>(arrives);
+            }
+        }
+        tile_.splat(entry.at_px, of.path.index, irradiance, of.light_path);
+    }
+
+    /// Lands it with those after it.
+    void land_later(const LensSample& aim, const LightArrival& of) {
+        aims_.push_back(aim);
+        arrivals_.push_back(of);
+        if (arrivals_.size() == kTogether) {
+            land_all();
+        }
+    }
+
+    /// Lands all that wait. Until then the tile lacks them.
+    void land_all() {
+        if constexpr (kIsAimed) {
+            segments_.clear();
+            for (const LightArrival& of : arrivals_) {
+                segments_.push_back(of.carried.segment);
+            }
+            are_blocked_.resize(segments_.size());
+            scene::find_occluded(*scene_.geometry, segments_, are_blocked_);
+            tile_.count_rays(segments_.size());
+            std::size_t free = 0;
+            for (std::size_t i = 0; i < arrivals_.size(); ++i) {
+                if (are_blocked_[i] == 0) {
+                    aims_[free] = aims_[i];
+                    arrivals_[free++] = arrivals_[i];
+                }
+            }
+            aims_.resize(free);
+            arrivals_.resize(free);
+            tile_.count_rays(spectral::kWavelengthsPerPath * free);
+            entrance_.arrive(aims_, arrivals_, [&](std::size_t i, const auto& entry) { land(entry, arrivals_[i]); });
+            aims_.clear();
+            arrivals_.clear();
+        }
+    }
+
+  private:
+    static constexpr std::size_t kTogether = 64;
+    static constexpr double kSquareMetresPerSquareMm = 1e-6;
+
+    const scene::Scene& scene_;
+    const Entrance& entrance_;
+    FilmTile& tile_;
+    double pixel_m2_;
+    std::vector<LensSample> aims_;
+    std::vector<LightArrival> arrivals_;  // as many
+    std::vector<scene::Segment> segments_;
+    std::vector<std::uint8_t> are_blocked_;
+};
+
+/// One light path: from each of its points it joins the camera, whose film it reaches as `landing` says. An entrance
+/// that says `meet` is met by chance, too: behind a mirror or smooth glass, from where no ray can be drawn.
 template <class Entrance>
 class LightWalk {
   public:
     LightWalk(const View& view, const Entrance& entrance, const spectral::PathWavelengths& path, PathSampler& numbers,
-              FilmTile& tile, LightPathsKept kept = LightPathsKept::all)
+              LightLanding<Entrance>& landing, LightPathsKept kept = LightPathsKept::all)
         : scene_(view.scene()),
           entrance_(entrance),
           path_(path),
           settings_(view.paths),
           numbers_(numbers),
-          tile_(tile),
-          kept_(kept),
-          pixel_m2_(1e-6 * view.camera->sensor().pixel_pitch_mm * view.camera->sensor().pixel_pitch_mm) {}
+          landing_(landing),
+          kept_(kept) {}
 
-    /// Returns how many rays were traced, in the scene and into the camera.
+    /// Returns how many rays were traced, in the scene and into the camera, but for those that wait in the landing.
     std::uint32_t walk() {
         const auto begin = numbers_.next();
         if (kept_ == LightPathsKept::of_suns) {
@@ -65,10 +172,7 @@ class LightWalk {
     }
 
   private:
-    static constexpr double kSquareMetresPerSquareMm = 1e-6;
-    static constexpr bool kIsWeighed = requires(const Entrance& entrance, const typename Entrance::Entry& entry) {
-        entrance.mis_weight(entry, std::size_t{0}, 0.0, false);
-    };
+    static constexpr bool kIsWeighed = LightLanding<Entrance>::kIsWeighed;
     static constexpr bool kIsMet = requires(const Entrance& entrance, const Ray<double>& ray,
                                             const spectral::PathWavelengths& path, PathSampler& numbers) {
         entrance.meet(ray, path, numbers);
@@ -146,52 +250,65 @@ class LightWalk {
         const LightOrigin from{start.is_at_infinity ? start.direction : start.point, start.is_at_infinity};
         join(
             from,
-            [&](const Entry& in) {
+            [&](const auto& in) {
                 if (start.is_at_infinity) {
                     const double kept = is_shared ? 1.0 - sky_by_camera(start.pdf) : 1.0;
-                    return Carried{
-                        .light = is_blocked(in.end - scene_.lights.beyond_mm(in.end) * start.direction, in.end)
-                                     ? spectral::SpectralSample()
-                                     : scene::scaled(start.value, kept),
-                        .others = LightMisWeight::others(start, 1.0)};
+                    return LightCarried{
+                        .light = scene::scaled(start.value, kept),
+                        .others = LightMisWeight::others(start, 1.0),
+                        .segment = {in.end - scene_.lights.beyond_mm(in.end) * start.direction, in.end}};
                 }
-                const spectral::SpectralSample intensity = scene_.lights.intensity(start, in.direction);
-                const Vec3d origin = scene::ray_origin(start.point, start.normal, start.error_mm, in.direction);
-                return Carried{.light = spectral::is_black(intensity) || is_blocked(origin, in.end)
-                                            ? spectral::SpectralSample()
-                                            : intensity,
-                               .others = LightMisWeight::others(start, std::abs(dot(start.normal, in.direction)))};
+                return LightCarried{
+                    .light = scene_.lights.intensity(start, in.direction),
+                    .others = LightMisWeight::others(start, std::abs(dot(start.normal, in.direction))),
+                    .segment = {scene::ray_origin(start.point, start.normal, start.error_mm, in.direction), in.end}};
             },
             is_shared);
     }
 
     void join_from_surface(const PathVertex& vertex, const spectral::SpectralSample& power) {
-        join({vertex.hit.point, false}, [&](const Entry& in) -> Carried {
+        join({vertex.hit.point, false}, [&](const auto& in) -> LightCarried {
             const auto [wi, wo, is_bent] = vertex.as_from(in.direction, vertex.frame.to_local(in.direction));
             if (!vertex.is_consistent(in.direction, wi) || (is_bent && !vertex.is_consistent(vertex.backwards, wo))) {
                 return {};
             }
             const spectral::SpectralSample scattered =
                 scene::evaluate(vertex.bsdf, wo, wi, scene::Transport::importance);
-            if (spectral::is_black(scattered) || is_blocked(scene::ray_origin(vertex.hit, in.direction), in.end)) {
+            if (spectral::is_black(scattered)) {
                 return {};
             }
             return {
                 .light = power * scattered * spectral::SpectralSample(shading_correction(vertex, wo, in.direction, wi)),
-                .others = kIsWeighed ? weight_.others(light_turn(vertex, in.direction, wi, 0.0)) : 0.0};
+                .others = kIsWeighed ? weight_.others(light_turn(vertex, in.direction, wi, 0.0)) : 0.0,
+                .segment = {scene::ray_origin(vertex.hit, in.direction), in.end}};
         });
     }
 
-    /// What goes along a ray into the camera: an intensity from a point, from far off an irradiance; and the pdfs of
-    /// the other techniques to make the path (LightMisWeight).
-    struct Carried {
-        spectral::SpectralSample light;
-        double others = 0.0;
-    };
+    [[nodiscard]] LightArrival arrival(const LightCarried& carried, bool is_far) const {
+        return {.carried = carried,
+                .path = path_,
+                .is_hero_alone = is_hero_alone_,
+                .is_far = is_far,
+                .light_path = landing_.path()};
+    }
 
     /// Draws a ray into the camera and brings its light to the film.
     template <class CarriedBy>
     void join(const LightOrigin& from, const CarriedBy& carried_by, bool leaves_dust_out = false) {
+        if constexpr (LightLanding<Entrance>::kIsAimed) {
+            if (const auto aim = entrance_.aim(from, path_, numbers_)) {
+                const LightCarried carried = carried_by(*aim);
+                if (!spectral::is_black(carried.light)) {
+                    landing_.land_later(*aim, arrival(carried, from.is_far));
+                }
+            }
+        } else {
+            join_at_once(from, carried_by, leaves_dust_out);
+        }
+    }
+
+    template <class CarriedBy>
+    void join_at_once(const LightOrigin& from, const CarriedBy& carried_by, bool leaves_dust_out) {
         auto entry = entrance_.draw(from, path_, is_hero_alone_, numbers_);
         if (!entry) {
             return;
@@ -203,11 +320,10 @@ class LightWalk {
         if (entry->is_dark()) {
             return;
         }
-        const Carried carried = carried_by(*entry);
-        if (spectral::is_black(carried.light)) {
-            return;
+        const LightCarried carried = carried_by(*entry);
+        if (!spectral::is_black(carried.light) && !is_blocked(carried.segment)) {
+            landing_.land(*entry, arrival(carried, from.is_far));
         }
-        splat(*entry, carried, (from.is_far ? kSquareMetresPerSquareMm : 1.0) / (entry->pdf * pixel_m2_));
     }
 
     /// The same along a ray that comes anyway and is free up to `free_mm`.
@@ -215,27 +331,13 @@ class LightWalk {
         const auto entry = entrance_.meet(ray, path_, numbers_);
         if (entry && length(entry->end - ray.origin) < free_mm) {
             rays_ += spectral::kWavelengthsPerPath;
-            splat(*entry, {.light = power, .others = 0.0}, 1.0 / (entry->pdf * pixel_m2_));
+            landing_.land(*entry, arrival({.light = power}, false));
         }
     }
 
-    void splat(const typename Entrance::Entry& entry, const Carried& carried, double to_irradiance) {
-        std::array<float, spectral::kWavelengthsPerPath> irradiance{};
-        for (std::size_t i = 0; i < irradiance.size(); ++i) {
-            if (entry.weight[i] > 0.0) {
-                double arrives = to_irradiance * entry.weight[i] * carried.light[i];
-                if constexpr (kIsWeighed) {
-                    arrives *= entrance_.mis_weight(entry, i, carried.others, is_hero_alone_);
-                }
-                irradiance[i] = static_cast<float>(arrives);
-            }
-        }
-        tile_.splat(entry.at_px, path_.index, irradiance);
-    }
-
-    bool is_blocked(const Vec3d& from, const Vec3d& to) {
+    bool is_blocked(const scene::Segment& segment) {
         ++rays_;
-        return scene::is_occluded(*scene_.geometry, from, to);
+        return scene::is_occluded(*scene_.geometry, segment.from, segment.to);
     }
 
     const scene::Scene& scene_;
@@ -243,11 +345,10 @@ class LightWalk {
     const spectral::PathWavelengths& path_;
     const PathSettings& settings_;
     PathSampler& numbers_;
-    FilmTile& tile_;
+    LightLanding<Entrance>& landing_;
     LightMisWeight weight_;
     LightPathsKept kept_;
     std::uint32_t rays_ = 0;
-    double pixel_m2_;
     bool is_hero_alone_ = false;
     bool is_mirrored_ = false;  // its last point sends light one way only
     bool is_mirrored_throughout_ = true;
@@ -267,12 +368,14 @@ class LightPaths {
           kept_(kept) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile) const {
+        LightLanding<Entrance> landing(view_, *entrance_, tile);
         for_each_path(view_, seed_, samples,
                       [&](int /*x*/, int /*y*/, std::uint32_t /*sample*/, const spectral::PathWavelengths& path,
                           PathSampler& numbers) {
-                          tile.begin_light_path();
-                          tile.count_rays(LightWalk(view_, *entrance_, path, numbers, tile, kept_).walk());
+                          landing.begin_path();
+                          tile.count_rays(LightWalk(view_, *entrance_, path, numbers, landing, kept_).walk());
                       });
+        landing.land_all();
     }
 
   private:

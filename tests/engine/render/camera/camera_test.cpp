@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <random>
+#include <vector>
 
 namespace lensproof::render::camera_test {
 namespace {
@@ -51,6 +55,45 @@ TEST(Camera, PathsOfASensorBesideTheAxisComeBackToTheirPixels) {
     EXPECT_NEAR(mean.x / seen, 12.25 * 0.6, within);
     EXPECT_NEAR(mean.y / seen, 7.5 * 0.6, within);
     EXPECT_DOUBLE_EQ(settings.sensor.half_diagonal_mm(), 0.6 * std::hypot(32.25, 22.5));
+}
+
+// In packets each ray has the bits that it has by itself: those that arrive, those that rims stop and those that miss,
+// more than fit in one go, and with dust before the lens.
+TEST(Camera, ManyRaysEndWhereEachEndsAlone) {
+    for (const LensModel model : {LensModel::exact, LensModel::exact_float, LensModel::thin_lens}) {
+        CameraSettings settings = tessar_camera();
+        settings.model = model;
+        std::optional<optics::Lens> lens = camera_lens(settings);
+        lens->dust =
+            optics::FrontDust{.covered = std::make_shared<const optics::ApertureTexture>(
+                                  optics::ApertureTexture{.size_x = 3, .size_y = 1, .values = {1.0F, 0.0F, 0.25F}}),
+                              .semi_diameter = lens->surfaces.front().semi_diameter,
+                              .albedo = 0.9,
+                              .through = 0.5};
+        const Camera camera(settings, lens, {.layers = 4, .strata_per_layer = 16}, PixelFilter{}, Cache());
+        std::vector<Ray<double>> rays;
+        std::vector<spectral::PathWavelengths> paths;
+        std::mt19937_64 random(1);
+        std::uniform_real_distribution<double> across(-12.0, 12.0);
+        std::uniform_real_distribution<double> slope(-0.3, 0.3);
+        for (int i = 0; i < 1000; ++i) {
+            rays.push_back(
+                {{across(random), across(random), -20.0}, normalized(Vec3d{slope(random), slope(random), 1.0})});
+            paths.push_back(camera.grid().path(i % camera.grid().size()));
+        }
+        std::vector<FilmImportance> found(rays.size());
+        camera.importances(rays, paths, found);
+        int arrived = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const FilmImportance alone = camera.importance(rays[i], paths[i]);
+            EXPECT_EQ(found[i].at_px, alone.at_px) << name_of(model);
+            EXPECT_EQ(found[i].transmittance, alone.transmittance);
+            EXPECT_EQ(found[i].pdf, alone.pdf);
+            arrived += alone.is_dark() ? 0 : 1;
+        }
+        EXPECT_GT(arrived, 30) << name_of(model);
+        EXPECT_TRUE(model == LensModel::thin_lens || arrived < 970) << name_of(model);
+    }
 }
 
 TEST(Camera, TakesALensInThePlaceOfTheOneNamed) {
