@@ -19,7 +19,7 @@ constexpr double kExcessOverAzimuth = 4.0;
 constexpr std::size_t kMostPositions = 9;
 // A step of the radius below the first counts for little; below the second it is not halved any more.
 constexpr double kSmallStep = 1.0 / 64.0;
-constexpr double kSmallestStep = 1.0 / 4096.0;
+constexpr double kSmallestStep = 1.0 / kFinestFractions;
 // Of all lenses that ship kinks take twenty more than at first at most (westrogon-24). A lens that wants all of its
 // steps halved is given up here, its regions larger than they need be; nodes are at most 9 · 16 · 129.
 constexpr std::size_t kMostFractions = 8 * kFirstFractions + 1;

@@ -8,6 +8,9 @@
 
 namespace lensproof::pupil {
 
+/// Fractions of a radius, at which nodes stand, are multiples of 1 / this.
+inline constexpr int kFinestFractions = 4096;
+
 /// Regions of a plane, each in the frame in which its place (RayFamily) lies at (0, r), at nodes in position in the
 /// band, azimuth, and radius as a fraction of where the light ends. Between nodes they are linear in all
 /// three, and hold what passes.

@@ -10,7 +10,8 @@ namespace lensproof::pupil {
 
 namespace {
 
-static_assert(PupilSliceTables::kPanels == kPupilPanels && PupilSliceTables::kAreaSteps == kGuideSteps);
+static_assert(PupilSliceTables::kPanels == kPupilPanels && PupilSliceTables::kAreaSteps == kGuideSteps &&
+              PupilSliceTables::kRadiusSteps == kFinestFractions);
 
 constexpr int kMostSlices = 256;  // of some 30 kB
 
