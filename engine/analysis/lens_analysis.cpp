@@ -124,12 +124,13 @@ LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& sett
     }
     const double distortion_z = distortion_plane(reference.lens, settings.object_distance);
     analysis.fields.resize(settings.fields_deg.size() * colours.size());
-    parallel_for(static_cast<int>(analysis.fields.size()), threads, [&](int i) {
-        const double field = settings.fields_deg[static_cast<std::size_t>(i) / colours.size()];
+    parallel_for(static_cast<int>(settings.fields_deg.size()), threads, [&](int i) {
+        const double field = settings.fields_deg[static_cast<std::size_t>(i)];
         const auto bundle = optics::field_bundle(reference.chief_rays, field * kDegree, settings.object_distance);
-        analysis.fields[static_cast<std::size_t>(i)] =
-            analyze_field(field, colours[static_cast<std::size_t>(i) % colours.size()], bundle, lens.projection,
-                          distortion_z, settings.rings);
+        FieldAnalysis* row = &analysis.fields[static_cast<std::size_t>(i) * colours.size()];
+        for (const AnalysedColour& colour : colours) {
+            *row++ = analyze_field(field, colour, bundle, lens.projection, distortion_z, settings.rings);
+        }
     });
     return analysis;
 }

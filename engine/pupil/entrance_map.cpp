@@ -71,10 +71,6 @@ EntranceSample EntranceMap::sample(const EntranceBeam& beam, double band_positio
     return {.ray = beam.ray(drawn.point), .offset = drawn.point, .pdf = drawn.pdf};
 }
 
-double EntranceMap::pdf(const EntranceBeam& beam, double band_position, Vec2d offset) const {
-    return regions_.pdf(place_of(beam.axis.direction), band_position, offset);
-}
-
 void EntranceMap::pdfs(const EntranceBeam& beam, std::span<const double> band_positions, Vec2d offset,
                        std::span<double> found) const {
     const Vec2d place = place_of(beam.axis.direction);

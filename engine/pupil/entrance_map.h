@@ -46,9 +46,8 @@ class EntranceMap {
     /// The ray of `beam`, one of this map's, that (u, v) in the unit square maps to.
     [[nodiscard]] EntranceSample sample(const EntranceBeam& beam, double band_position, double u, double v) const;
 
-    /// The pdf that `sample` draws an offset with, 1/mm²; 0 outside the disc and the region.
-    [[nodiscard]] double pdf(const EntranceBeam& beam, double band_position, Vec2d offset) const;
-    /// The same at several positions, into as many of `found`.
+    /// The pdfs that `sample` draws an offset with at several positions, 1/mm², into as many of `found`; 0 outside the
+    /// disc and the region.
     void pdfs(const EntranceBeam& beam, std::span<const double> band_positions, Vec2d offset,
               std::span<double> found) const;
 

@@ -125,29 +125,11 @@ PathPdf ExactCamera::beam_pdf(const pupil::EntranceBeam& beam, Vec2d offset,
     return over_heroes([&](std::size_t i) { return mm2 * pdfs[i]; });
 }
 
-template <class T>
-FilmImportance ExactCamera::traced_importance(const optics::SpectralLens<T>& lens, const Sensor& sensor,
-                                              const Ray<double>& ray, const spectral::PathWavelengths& path) const {
-    FilmImportance found;
-    const double clear = dust_ ? dust_->clear(ray, lens_.at().front()) : 1.0;
-    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
-        const optics::TraceLens<T>& at = lens.at(path.index[i]);
-        const optics::TracedRay<T> traced = optics::trace<optics::Direction::forward>(at, optics::convert_ray<T>(ray));
-        if (traced.status == optics::RayStatus::ok) {
-            const FilmMeeting film = meet_film(slices_, lens.at(0).image_z, path.index[i],
-                                               {optics::convert_vector<double>(traced.ray.origin),
-                                                optics::convert_vector<double>(traced.ray.direction)});
-            found.at_px[i] = sensor.pixel(film.point);
-            found.transmittance[i] = clear * traced.transmittance;
-            found.pdf[i] = film.pdf;
-        }
-    }
-    return found;
-}
-
 FilmImportance ExactCamera::importance(const Sensor& sensor, const Ray<double>& ray,
                                        const spectral::PathWavelengths& path) const {
-    return in_float_ ? traced_importance(*in_float_, sensor, ray, path) : traced_importance(lens_, sensor, ray, path);
+    FilmImportance found;
+    importances(sensor, {&ray, 1}, {&path, 1}, {&found, 1});
+    return found;
 }
 
 template <class T>

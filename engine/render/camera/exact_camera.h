@@ -66,7 +66,7 @@ class ExactCamera {
 
     [[nodiscard]] FilmImportance importance(const Sensor& sensor, const Ray<double>& ray,
                                             const spectral::PathWavelengths& path) const;
-    /// Of many rays in packets, with the same bits.
+    /// Of many rays in packets; each has the bits that it has alone.
     void importances(const Sensor& sensor, std::span<const Ray<double>> rays,
                      std::span<const spectral::PathWavelengths> paths, std::span<FilmImportance> found) const;
     [[nodiscard]] std::optional<LensSample> sample(const LightOrigin& from, const spectral::PathWavelengths& path,
@@ -87,9 +87,6 @@ class ExactCamera {
     [[nodiscard]] PathPdf beam_pdf(const pupil::EntranceBeam& beam, Vec2d offset,
                                    const spectral::PathWavelengths& path) const;
 
-    template <class T>
-    [[nodiscard]] FilmImportance traced_importance(const optics::SpectralLens<T>& lens, const Sensor& sensor,
-                                                   const Ray<double>& ray, const spectral::PathWavelengths& path) const;
     template <class T>
     void trace_importances(const optics::SpectralLens<T>& lens, const Sensor& sensor, std::span<const Ray<double>> rays,
                            std::span<const spectral::PathWavelengths> paths, std::span<FilmImportance> found) const;

@@ -8,11 +8,6 @@
 
 namespace lensproof::render {
 
-FilmMeeting meet_film(const pupil::PupilSlices& pupil, double film_z, int slice, const Ray<double>& behind) {
-    const FilmCrossing<double> at = cross_film(behind, film_z, pupil.map().plane_z());
-    return {.point = at.film, .pdf = pupil.pdf(at.film, slice, at.pupil) * at.per_etendue};
-}
-
 template <class T>
 void meet_film(const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil, const PathKernels& kernels,
                const optics::RayBatch<T>& behind, FilmMeetings& meetings) {

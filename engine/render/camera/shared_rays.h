@@ -9,16 +9,8 @@
 
 namespace lensproof::render {
 
-/// Where a ray behind the lens (lens space) meets the film, and the pdf with which camera paths of a wavelength, by its
-/// slice, draw it: per etendue, 1/(mm² sr), times a pixel's area.
-struct FilmMeeting {
-    Vec2d point;
-    double pdf = 0.0;
-};
-FilmMeeting meet_film(const pupil::PupilSlices& pupil, double film_z, int slice, const Ray<double>& behind);
-
-/// The same of rays as `trace_batch` left them behind `lens`, kSharedChunk at the most; and what of their light
-/// arrives.
+/// Where rays (lens space) meet the film, as `trace_batch` left them behind `lens`, kSharedChunk at the most; what of
+/// their light arrives; and with which pdf camera paths of their wavelengths draw their points of the pupil.
 template <class T>
 void meet_film(const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil, const PathKernels& kernels,
                const optics::RayBatch<T>& behind, FilmMeetings& meetings);

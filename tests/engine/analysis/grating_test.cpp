@@ -42,7 +42,7 @@ TEST(Grating, ASpectrographHasItsLinesWhereTheGratingEquationPutsThem) {
                                     .reference_wavelength_nm = kRed_nm,
                                     .fields_deg = {0.0, 5.0, -8.0},
                                     .rings = 4};
-    const LensAnalysis analysis = analyze_lens(lens, settings);
+    const LensAnalysis analysis = analyze_lens(lens, settings, 3);  // threads
     EXPECT_NEAR(analysis.reference_paraxial.efl, kFocal, 1e-12);
     EXPECT_FALSE(analysis.seidel) << "third order counts along the axis";
     ASSERT_EQ(analysis.fields.size(), 6u);
