@@ -5,8 +5,9 @@
 // triangle to double's rounding of the plane through its (float) vertices, and a ray that leaves a surface has to be
 // moved off it by double's rounding alone. Which of two triangles a ray meets at their common edge is Embree's word, in
 // float: closed meshes are tight at their edges (at a vertex Embree's robust mode is not to the last bit of float), and
-// a ray that skims along a mesh at less than 1e-3 rad may take the edge next to it for either side. A scene's triangles
-// that are few, and stand there once, are met in double alone, tight at their vertices too.
+// a ray that skims along a mesh at less than 1e-3 rad may take the edge next to it for either side. The smallest
+// meshes, which stand in the scene once and have few triangles together, are met in double alone, tight at their
+// vertices too.
 #pragma once
 #include <cstdint>
 #include <memory>

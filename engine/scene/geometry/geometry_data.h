@@ -26,6 +26,7 @@ struct PlacedObject {
     Box bounds;
     std::vector<Facet>
         facets;  // of a quad; of each triangle of a mesh, if that is kept (geometry_build.cpp); else none
+    bool is_of_few_triangles = false;
 };
 
 struct MeshTriangle {
@@ -39,7 +40,7 @@ struct SceneGeometry::Data {
     std::vector<PlacedObject> objects;
     std::vector<AnalyticObject> analytic;    // the spheres and quads among them, the primitives of one Embree geometry
     bool tests_analytic_one_by_one = false;  // a handful is sooner tested so than found by Embree
-    /// Those of all meshes, where they are so few that each ray is tested against each; then Embree knows of none.
+    /// Those of small meshes, so few that each ray is tested against each; Embree does not know of them.
     FewTriangles triangles;
     std::vector<MeshTriangle> triangle_of;  // by its place among these
     bool has_embree_geometry = false;

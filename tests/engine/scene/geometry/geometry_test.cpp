@@ -282,12 +282,16 @@ TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndNearlyAtVertices) {
     EXPECT_LE(leaks.at_vertices, 19 + 4 * 4);  // 19 were seen, with a deviation of 4
 }
 
-// A few triangles are met in double, in seams as wide as its rounding.
+// A few triangles are met in double, in seams as wide as its rounding; those of a small mesh beside a large one, too.
 TEST(SceneGeometry, AFewTrianglesAreTightAtVerticesToo) {
     for (const Vec3d& place : {Vec3d{31.0, -170.0, 905.0}, Vec3d{3e5, -1e5, 9e5}}) {
-        const SceneGeometry moved = scene_of(icosphere(100.0, 0), at(place, about_x(33.0)));
-        const Leaks leaks =
-            leaks_of(std::get<TriangleMesh>(moved.shape(0)), place, {&moved}, 0.7);  // facets lean by 0.607
+        const AffineMap to_world = at(place, about_x(33.0));
+        const SceneGeometry moved = scene_of(icosphere(100.0, 0), to_world);
+        const SceneGeometry beside_many(
+            {icosphere(100.0, 0), icosphere(1.0, 2)},
+            {{.shape = 0, .to_world = to_world}, {.shape = 1, .to_world = at(place + Vec3d{0, 0, 4000.0})}});
+        const Leaks leaks = leaks_of(std::get<TriangleMesh>(moved.shape(0)), place, {&moved, &beside_many},
+                                     0.7);  // facets lean by 0.607
         EXPECT_EQ(leaks.at_edges, 0);
         EXPECT_EQ(leaks.at_vertices, 0);
     }
