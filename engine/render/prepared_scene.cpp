@@ -111,6 +111,9 @@ std::map<std::string, std::string> PreparedScene::metadata() const {
     std::map<std::string, std::string> metadata = camera_.metadata();
     if (std::holds_alternative<scene::Scene>(world_)) {
         metadata["lensproof:maxBounces"] = fmt::format("{}", setup_.max_bounces);
+        if (setup_.scene.precision != scene::HitPrecision::in_double) {
+            metadata["lensproof:precision"] = scene::name_of(setup_.scene.precision);
+        }
         if (const double from = setup_.diffraction.smallest_airy; from != DiffractionSettings{}.smallest_airy) {
             metadata["lensproof:diffractedFromAiry"] = fmt::format("{}", from);
         }

@@ -54,6 +54,9 @@ void read_render_table(TomlTable& table, SceneSetup& setup) {
         setup.max_bounces = table.integer_or("max_bounces", setup.max_bounces, 0, 10000);
         setup.diffraction.smallest_airy =
             table.number_or("diffracted_from_airy", setup.diffraction.smallest_airy, {.min = 1.0, .max = 1000.0});
+        if (table.has("precision")) {
+            setup.scene.precision = scene::hit_precision_named(table.choice("precision", scene::hit_precision_names()));
+        }
     }
     read_spectral_sampling(table, setup.spectral);
     const int wavelengths = setup.spectral.strata();

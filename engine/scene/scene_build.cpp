@@ -49,7 +49,8 @@ class SceneBuilder {
         }
         find_uv_readers();
         BuiltScene built{.scene = {.grid = spectra_.grid(),
-                                   .geometry = std::make_unique<SceneGeometry>(std::move(shapes_), std::move(objects_)),
+                                   .geometry = std::make_unique<SceneGeometry>(std::move(shapes_), std::move(objects_),
+                                                                               description_.precision),
                                    .materials = std::move(materials_),
                                    .absorption = std::move(absorption_),
                                    .lights = {}},

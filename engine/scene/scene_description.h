@@ -1,6 +1,7 @@
 // engine/scene/scene_description.h — a scene as a file states it: values that name what is meant, checked, but nothing
 // looked up or loaded. `engine/scene/README.md` documents every key.
 #pragma once
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "engine/base/affine.h"
 #include "engine/scene/chart/chart.h"
+#include "engine/scene/geometry/geometry.h"
 #include "engine/scene/geometry/mesh_file.h"
 #include "engine/scene/geometry/shapes.h"
 #include "engine/scene/light/light_file.h"
@@ -52,6 +54,15 @@ struct SceneDescription {
     std::vector<MaterialDescription> materials;
     std::vector<ObjectDescription> objects;
     std::vector<LightDescription> lights;
+    HitPrecision precision = HitPrecision::in_double;
+
+    /// A mesh or a polygon: without one the precision changes nothing.
+    [[nodiscard]] bool has_triangles() const {
+        return std::ranges::any_of(objects, [](const ObjectDescription& object) {
+            return std::holds_alternative<MeshFromFile>(object.shape) ||
+                   std::holds_alternative<TriangleMesh>(object.shape);
+        });
+    }
 };
 
 }  // namespace lensproof::scene

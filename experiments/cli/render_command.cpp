@@ -117,6 +117,7 @@ Json audit_json(const render::PreparedScene& scene, const RenderJobOptions& opti
 struct RenderWishes {
     std::string model;      // empty: the scene's; "auto": as a plan has it
     std::string tolerance;  // of the plan
+    std::string precision;  // of hits; empty: the scene's
     std::string paths = "camera";
     std::vector<std::string> passes;
     bool is_audited = false;
@@ -178,6 +179,12 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
     if (wishes.is_audited && setup.chart) {
         throw InputError("--audit is for scenes with lights, not for a [chart] in an even world");
     }
+    if (!wishes.precision.empty()) {
+        if (setup.chart) {
+            throw InputError("--precision is for scenes with lights, not for a [chart] in an even world");
+        }
+        setup.scene.precision = scene::hit_precision_named(wishes.precision);
+    }
     if (paths == "light" && (options.noise > 0.0 || options.has_features)) {
         throw InputError("--paths light goes neither with --noise nor with --features; --paths both does");
     }
@@ -211,7 +218,8 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
                     {"settings", fmt::format("{} filter, {} features{}", filter.name(),
                                              options.has_features ? "with" : "no", scene->integrator().description) +
                                      (passes.empty() ? "" : fmt::format(", passes {}", fmt::join(passes, " and "))) +
-                                     (plan ? fmt::format(", at most {} scatterings", setup.max_bounces) : "")}};
+                                     (plan ? fmt::format(", at most {} scatterings", setup.max_bounces) : "") +
+                                     (wishes.precision.empty() ? "" : ", hits in " + wishes.precision)}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->camera().colours();
     if (is_metered) {
@@ -226,6 +234,7 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
     job.json["scene"] = options.scene;
     job.json["lens"] = lens ? lens->id : "";
     job.json["model"] = render::name_of(setup.camera.model);
+    job.json["precision"] = scene::name_of(setup.scene.precision);
     if (plan) {
         job.json["plan"] = studies::plan_json(*plan);
         job.notes.metadata["lensproof:plan"] = studies::plan_json(*plan, studies::PlanTimes::left_out).dump();
@@ -266,6 +275,11 @@ void add_render_command(Program& program) {
         .add_option("--tolerance", wishes->tolerance,
                     "What may be wrong, for --model auto: such as 0.5px,0.02ev,1de, or visible")
         .type_name("T");
+    command
+        .add_option("--precision", wishes->precision,
+                    "Who says which triangle of a larger mesh a ray meets first, in place of the scene's precision: "
+                    "double; or float, which is faster and takes surfaces a few µm apart for one")
+        .check(one_of(scene::hit_precision_names()));
     command
         .add_option("--paths", wishes->paths,
                     "Where paths begin: camera (the default); light, which finds what shines through glass and cannot "

@@ -84,7 +84,7 @@ void print_rungs(const std::vector<studies::MeasuredRung>& rungs, const Tradeoff
     };
     for (const studies::MeasuredRung& rung : rungs) {
         if (!rung.not_applicable.empty()) {
-            print("{:<29} not for this lens: {}\n", rung.name, rung.not_applicable);
+            print("{:<29} not here: {}\n", rung.name, rung.not_applicable);
             continue;
         }
         const studies::FieldError& frame = rung.field.frame;

@@ -125,6 +125,7 @@ TEST(RenderPasses, RefuseWhatDoesNotAddUp) {
     place.file("scene.toml", small_scene());
     expect_no_render("ghosts", {"--passes", "[chart]"});
     expect_refused(place, {"render", "scene.toml", "--audit", "-o", "a.exr"}, {"--audit", "[chart]"});
+    expect_refused(place, {"render", "scene.toml", "--precision", "float", "-o", "a.exr"}, {"--precision", "[chart]"});
 }
 
 }  // namespace lensproof::render_passes_test

@@ -80,6 +80,23 @@ TEST(TradeoffCommand, ReportsWhatTheContractSays) {
     EXPECT_NE(place.content("page.html").find("thin-lens"), std::string::npos);
 }
 
+// With hits in float rays come out of the lens as they do, and the picture is the same but for noise; where the scene
+// has no triangles there is no such rung.
+TEST(TradeoffCommand, HitsInFloatAreARungOfScenesWithTriangles) {
+    const Workplace place;
+    const auto rung = [&](const std::string& more) {
+        place.file("scene.toml", kScene + more);
+        return place.json(with(kQuick, {"--rungs", "exact-double-float-hits"}))["rungs"][1];
+    };
+    EXPECT_TRUE(says(rung("")["not_applicable"], "no triangles"));
+    const Json with_triangles = rung(
+        "[[objects]]\nshape = \"polygon\"\nvertices_mm = [[0, 0, 2500], [0, 300, 2500], [300, 300, 2500]]\nmaterial = "
+        "\"grey\"\n");
+    EXPECT_EQ(with_triangles["error"]["position_rms_um"], 0.0);
+    EXPECT_LT(with_triangles["error"]["ciede2000_mean"].get<double>(),
+              0.05 + 3.0 * with_triangles["error"]["ciede2000_mean_standard_error"].get<double>());
+}
+
 TEST(TradeoffCommand, ErrorsAreTheSameForAnyNumberOfThreads) {
     const Workplace place;
     place.file("scene.toml", kScene);

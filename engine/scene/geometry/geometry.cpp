@@ -63,7 +63,9 @@ inline bool is_usable(const Vec3d& origin, const Vec3d& direction) {
 RTCRay start(Query& query) {
     const Stretch<double>& ray = query.ray;
     embree::init(query.context);
-    query.behind_mm = kFloatRoundings * (largest_coordinate(ray.origin) + query.data->mesh_reach_mm);
+    if (query.data->precision == HitPrecision::in_double) {
+        query.behind_mm = kFloatRoundings * (largest_coordinate(ray.origin) + query.data->mesh_reach_mm);
+    }
     const auto origin = converted<float>(ray.origin - query.behind_mm * ray.direction);
     const auto direction = converted<float>(ray.direction);
     const float from = static_cast<float>(ray.from * (1.0 - kFloatRoundings));
@@ -78,13 +80,46 @@ RTCRay start(Query& query) {
             .mask = ~0U};
 }
 
+std::uint32_t object_of(const RTCHit& hit) {
+    return hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? hit.instID[0] : hit.geomID;
+}
+
+/// Where the true ray meets a triangle that Embree has found.
+std::optional<Meeting<double>> judged(const Query& query, const RTCHit& hit) {
+    const PlacedObject& placed = query.data->objects[object_of(hit)];
+    const bool is_instance = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+    const Stretch<double> ray = is_instance ? mapped(placed.place.to_local, query.ray) : query.ray;
+    const double near = kFloatRoundings * (largest_coordinate(query.ray.origin) + placed.place.reach_mm);
+    return placed.facets.empty()
+               ? meet(sides(std::get<TriangleMesh>(*placed.shape), hit.primID), hit.u, hit.v, near, ray)
+               : meet(placed.facets[hit.primID].sides, hit.u, hit.v, near, ray);
+}
+
+/// Whether the true ray meets it; then it counts if it is nearer.
+bool take(Query& query, const RTCHit& hit) {
+    const auto meeting = judged(query, hit);
+    return meeting && (query.nearest.offer(*meeting, object_of(hit), hit.primID), true);
+}
+
 /// Goes on from what is met already with what Embree knows of.
 void ask_embree(const SceneGeometry::Data& data, const Stretch<double>& stretch, Nearest& nearest) {
     Query query{.data = &data, .ray = stretch, .nearest = nearest};
     RTCRayHit ray{.ray = start(query)};
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    embree::intersect(data.scene.get(), query.context, ray);
+    const auto finds_one = [&] {
+        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        embree::intersect(data.scene.get(), query.context, ray);
+        return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    };
+    if (data.precision == HitPrecision::in_double) {
+        finds_one();
+    } else {
+        const float far = ray.ray.tfar;
+        while (finds_one() && !take(query, ray.hit)) {
+            ray.ray.tnear = std::nextafter(ray.ray.tfar, std::numeric_limits<float>::infinity());
+            ray.ray.tfar = far;
+        }
+    }
     nearest = query.nearest;
 }
 
@@ -171,15 +206,8 @@ void meet_in_columns(const SceneGeometry::Data& data, const AnalyticKernels::Mee
 void judge_triangle(const RTCFilterFunctionNArguments* arguments) {
     const RTCHit hit = rtcGetHitFromHitN(arguments->hit, 1, 0);
     Query& query = query_of(arguments->context);
-    const bool is_instance = hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-    const std::uint32_t object = is_instance ? hit.instID[0] : hit.geomID;
-    const PlacedObject& placed = query.data->objects[object];
-    const Stretch<double> ray = is_instance ? mapped(placed.place.to_local, query.ray) : query.ray;
-    const double near = kFloatRoundings * (largest_coordinate(query.ray.origin) + placed.place.reach_mm);
-    const auto meeting = placed.facets.empty()
-                             ? meet(sides(std::get<TriangleMesh>(*placed.shape), hit.primID), hit.u, hit.v, near, ray)
-                             : meet(placed.facets[hit.primID].sides, hit.u, hit.v, near, ray);
-    if (!meeting || (!query.is_occlusion && !query.nearest.offer(*meeting, object, hit.primID))) {
+    const auto meeting = judged(query, hit);
+    if (!meeting || (!query.is_occlusion && !query.nearest.offer(*meeting, object_of(hit), hit.primID))) {
         arguments->valid[0] = 0;
     } else if (!query.is_occlusion) {
         float& embree_far = RTCRayN_tfar(arguments->ray, 1, 0);
@@ -195,10 +223,8 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* arguments) {
     const AnalyticObject& object = query.data->analytic[arguments->primID];
     const auto [is_met, meeting] = meet(object, query.ray);
     if (is_met && query.nearest.offer(meeting, object.object, 0)) {
-        auto* ray = reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-        ray->ray.tfar = std::min(ray->ray.tfar, query.embree_distance(meeting.at));
-        ray->hit.geomID = arguments->geomID;
-        ray->hit.primID = arguments->primID;
+        float& embree_far = reinterpret_cast<RTCRayHit*>(arguments->rayhit)->ray.tfar;
+        embree_far = std::min(embree_far, query.embree_distance(meeting.at));
     }
 }
 
@@ -219,6 +245,19 @@ void bound_analytic(const RTCBoundsFunctionArguments* arguments) {
     const auto low = converted<float>(box.low - Vec3d{margin, margin, margin});
     const auto high = converted<float>(box.high + Vec3d{margin, margin, margin});
     *arguments->bounds_o = {low.x, low.y, low.z, 0.0F, high.x, high.y, high.z, 0.0F};
+}
+
+const std::vector<std::string>& hit_precision_names() {
+    static const std::vector<std::string> names = {"double", "float"};
+    return names;
+}
+
+const std::string& name_of(HitPrecision precision) {
+    return hit_precision_names()[static_cast<std::size_t>(precision)];
+}
+
+HitPrecision hit_precision_named(const std::string& name) {
+    return name == name_of(HitPrecision::in_float) ? HitPrecision::in_float : HitPrecision::in_double;
 }
 
 SceneGeometry::~SceneGeometry() = default;

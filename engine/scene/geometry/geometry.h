@@ -8,6 +8,10 @@
 // a ray that skims along a mesh at less than 1e-3 rad may take the edge next to it for either side. The smallest
 // meshes, which stand in the scene once and have few triangles together, are met in double alone, tight at their
 // vertices too.
+//
+// In float (HitPrecision) Embree's word is taken for the first triangle, without a judge. Of surfaces that are nearer
+// to each other than 2^-17 of how far they reach from the world's origin it may take either, and rays leave such a mesh
+// by twice as much and do not see what is nearer to it. The rest is as in double.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -49,12 +53,24 @@ struct Box {
     Vec3d high;
 };
 
+/// Who says which triangle of Embree's a ray meets first.
+enum class HitPrecision : std::uint8_t {
+    in_double,  // the true ray, of all that come into question
+    in_float,   // Embree; where the ray meets it is found in double
+};
+
+/// "double", "float", in the order of the enumeration; and which has a name.
+const std::vector<std::string>& hit_precision_names();
+const std::string& name_of(HitPrecision precision);
+HitPrecision hit_precision_named(const std::string& name);
+
 class SceneGeometry {
   public:
     /// Meshes are repaired; one that stands in the scene once is moved into world coordinates, one that stands there
     /// more often is kept once and instanced. Throws InputError for what `repair` refuses, for an object without a
     /// shape, with a singular map or farther than 1e12 mm away, and for a shape without a size.
-    SceneGeometry(std::vector<Shape> shapes, std::vector<SceneObject> objects);
+    SceneGeometry(std::vector<Shape> shapes, std::vector<SceneObject> objects,
+                  HitPrecision precision = HitPrecision::in_double);
     ~SceneGeometry();
     SceneGeometry(SceneGeometry&&) noexcept;
     SceneGeometry& operator=(SceneGeometry&&) noexcept;

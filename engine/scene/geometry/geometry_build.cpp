@@ -149,6 +149,38 @@ void bound_objects(SceneGeometry::Data& data) {
     }
 }
 
+/// Marks small meshes, the smallest first, as long as they have few triangles together. A mesh that is instanced is in
+/// coordinates of its own, and Embree's, like all that are left.
+void choose_few_triangles(SceneGeometry::Data& data) {
+    constexpr std::size_t kFewTriangles = 48;  // of one ray in some 70 ns by AVX-512, 100 by AVX2; Embree takes 120
+    std::vector<std::uint32_t> meshes;
+    for (std::uint32_t i = 0; i < data.objects.size(); ++i) {
+        if (std::holds_alternative<TriangleMesh>(*data.objects[i].shape) &&
+            data.uses[data.objects[i].object.shape] == 1) {
+            meshes.push_back(i);
+        }
+    }
+    const auto size = [&](std::uint32_t object) { return data.mesh(object).triangles.size(); };
+    std::ranges::stable_sort(meshes, {}, size);
+    std::size_t count = 0;
+    const auto first_too_many = std::ranges::find_if(meshes, [&](std::uint32_t object) {
+        count += size(object);
+        return count > kFewTriangles;
+    });
+    std::for_each(meshes.begin(), first_too_many,
+                  [&](std::uint32_t object) { data.objects[object].is_of_few_triangles = true; });
+}
+
+/// Where Embree's word is taken, what a ray leaves has to lie behind it in float.
+void state_roundings(SceneGeometry::Data& data) {
+    for (PlacedObject& placed : data.objects) {
+        if (data.precision == HitPrecision::in_float && std::holds_alternative<TriangleMesh>(*placed.shape) &&
+            !placed.is_of_few_triangles) {
+            placed.place.epsilon = std::numeric_limits<float>::epsilon();
+        }
+    }
+}
+
 /// Of quads, and of flat meshes that stand in the scene once where all of them have so few triangles that their facets
 /// stay in the caches.
 void find_facets(SceneGeometry::Data& data) {
@@ -201,8 +233,10 @@ void attach_mesh(const SceneGeometry::Data& data, RTCScene scene, const Triangle
                                sizeof(mesh.positions[0]), mesh.positions.size());
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                                sizeof(mesh.triangles[0]), mesh.triangles.size());
-    rtcSetGeometryIntersectFilterFunction(geometry.get(), judge_triangle);
-    rtcSetGeometryOccludedFilterFunction(geometry.get(), judge_triangle);
+    if (data.precision == HitPrecision::in_double) {
+        rtcSetGeometryIntersectFilterFunction(geometry.get(), judge_triangle);
+        rtcSetGeometryOccludedFilterFunction(geometry.get(), judge_triangle);
+    }
     attach(scene, geometry, id);
 }
 
@@ -248,42 +282,22 @@ AnalyticObject analytic_object(const PlacedObject& placed, std::uint32_t index) 
     return made;
 }
 
-/// Small meshes first, as long as they have few triangles together. A mesh that is instanced is in coordinates of its
-/// own, and Embree's.
-void gather_few_triangles(SceneGeometry::Data& data) {
-    constexpr std::size_t kFewTriangles = 48;  // of one ray in some 70 ns by AVX-512, 100 by AVX2; Embree takes 120
-    std::vector<std::uint32_t> meshes;
-    for (std::uint32_t i = 0; i < data.objects.size(); ++i) {
-        if (std::holds_alternative<TriangleMesh>(*data.objects[i].shape) &&
-            data.uses[data.objects[i].object.shape] == 1) {
-            meshes.push_back(i);
-        }
-    }
-    const auto size = [&](std::uint32_t object) { return data.mesh(object).triangles.size(); };
-    std::ranges::stable_sort(meshes, {}, size);
-    std::size_t count = 0;
-    const auto first_too_many = std::ranges::find_if(meshes, [&](std::uint32_t object) {
-        count += size(object);
-        return count > kFewTriangles;
-    });
-    meshes.erase(first_too_many, meshes.end());
-    std::ranges::sort(meshes);  // of two that are equally far, the object before counts
-    data.triangles.reach_mm = data.mesh_reach_mm;
-    for (const std::uint32_t object : meshes) {
-        data.objects[object].is_of_few_triangles = true;
-        for (std::uint32_t k = 0; k < size(object); ++k) {
-            data.triangles.add(sides(data.mesh(object), k));
-            data.triangle_of.push_back({object, k});
-        }
+void add_few_triangles(SceneGeometry::Data& data, std::uint32_t object) {
+    const TriangleMesh& mesh = data.mesh(object);
+    for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+        data.triangles.add(sides(mesh, k));
+        data.triangle_of.push_back({object, k});
     }
 }
 
 /// Hands Embree the object, unless each ray is tested against it.
-void attach_object(SceneGeometry::Data& data, std::uint32_t object) {
+void add_object(SceneGeometry::Data& data, std::uint32_t object) {
     const PlacedObject& placed = data.objects[object];
     if (!std::holds_alternative<TriangleMesh>(*placed.shape)) {
         data.analytic.push_back(analytic_object(placed, object));
-    } else if (!placed.is_of_few_triangles) {
+    } else if (placed.is_of_few_triangles) {
+        add_few_triangles(data, object);
+    } else {
         data.has_embree_geometry = true;
         if (data.uses[placed.object.shape] == 1) {
             attach_mesh(data, data.scene.get(), data.mesh(object), object);
@@ -300,9 +314,9 @@ void build(SceneGeometry::Data& data) {
     }
     data.scene = new_scene(data);
     data.instanced.resize(data.shapes.size());
-    gather_few_triangles(data);
+    data.triangles.reach_mm = data.mesh_reach_mm;
     for (std::uint32_t i = 0; i < data.objects.size(); ++i) {
-        attach_object(data, i);
+        add_object(data, i);
     }
     constexpr std::size_t kFew = 6;
     data.tests_analytic_one_by_one = data.analytic.size() <= kFew;
@@ -320,12 +334,15 @@ void build(SceneGeometry::Data& data) {
 
 }  // namespace
 
-SceneGeometry::SceneGeometry(std::vector<Shape> shapes, std::vector<SceneObject> objects) {
+SceneGeometry::SceneGeometry(std::vector<Shape> shapes, std::vector<SceneObject> objects, HitPrecision precision) {
     auto data = std::make_unique<Data>();
+    data->precision = precision;
     data->shapes = std::move(shapes);
     check_shapes(*data);
     place_objects(*data, objects);
     bound_objects(*data);
+    choose_few_triangles(*data);
+    state_roundings(*data);
     find_facets(*data);
     build(*data);
     data_ = std::move(data);

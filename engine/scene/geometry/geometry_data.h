@@ -47,6 +47,7 @@ struct SceneGeometry::Data {
     std::vector<std::string> remarks;
     Box bounds;
     double mesh_reach_mm = 0.0;  // of the farthest vertex, in the world
+    HitPrecision precision = HitPrecision::in_double;
     embree::Device device;
     std::vector<embree::Scene> instanced;  // of a shape that is instanced, by the shape's index
     embree::Scene scene;
@@ -60,7 +61,8 @@ struct SceneGeometry::Data {
     }
 };
 
-// What Embree calls back. The first two for a triangle, or for a sphere or quad whose box Embree's ray has met.
+// What Embree calls back. The first two for a triangle, in double, or for a sphere or quad whose box Embree's ray has
+// met.
 void judge_triangle(const RTCFilterFunctionNArguments* arguments);
 void intersect_analytic(const RTCIntersectFunctionNArguments* arguments);
 void occlude_analytic(const RTCOccludedFunctionNArguments* arguments);

@@ -138,8 +138,9 @@ SurfaceHit world_hit(const ObjectPlace& place, const ShapePoint& at) {
     hit.tangent = place.is_rigid ? ahead * at.tangent : tangent_along(ahead * at.tangent, hit.shading_normal);
     // A point passes some ten operations on its way into the shape's frame and back, each with the rounding of the
     // largest number involved; a map that stretches unevenly carries an error along one direction to another.
-    constexpr double kRoundings = 32.0 * std::numeric_limits<double>::epsilon();
-    hit.error_mm = kRoundings * at.sharpness * place.stretch_ratio * (largest_coordinate(hit.point) + place.reach_mm);
+    constexpr double kRoundings = 32.0;
+    hit.error_mm = kRoundings * place.epsilon * at.sharpness * place.stretch_ratio *
+                   (largest_coordinate(hit.point) + place.reach_mm);
     return hit;
 }
 

@@ -1,6 +1,7 @@
 // engine/scene/geometry/shape_hit.h — single shapes met by a ray, in double.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "engine/base/affine.h"
@@ -48,6 +49,7 @@ struct ObjectPlace {
     double stretch_ratio = 1.0;  // of the largest principal stretch to the smallest
     bool is_rigid = true;        // `to_world` keeps lengths and angles, to rounding
     double reach_mm = 0.0;       // of a coordinate that the map handles: the shape's, in the world, and the translation
+    double epsilon = std::numeric_limits<double>::epsilon();  // of the numbers in which rays meet it
 };
 
 /// The point in the world, a hit without a distance, material, object and primitive.

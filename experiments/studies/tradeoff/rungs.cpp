@@ -125,6 +125,10 @@ struct Reference {
 MeasuredRung measure_rung(const Rung& rung, const render::SceneSetup& own, const Reference& reference,
                           const TradeoffSettings& settings) {
     MeasuredRung measured{.name = rung.name};
+    if (rung.hits && !own.scene.has_triangles()) {
+        measured.not_applicable = "the scene has no triangles, and all else is met in double";
+        return measured;
+    }
     const render::SceneSetup setup = on_rung(own, rung);
     const render::PixelFilter box;
     try {
@@ -175,6 +179,7 @@ const std::vector<Rung>& ladder() {
             all.push_back({.name = render::name_of(model), .model = model});
         }
         all.push_back({.name = kReferenceRung});
+        all.push_back({.name = fmt::format("{}-float-hits", kReferenceRung), .hits = scene::HitPrecision::in_float});
         for (const int wavelengths : {16, 8, 4}) {
             all.push_back(
                 {.name = fmt::format("{}-{}-wavelengths", kReferenceRung, wavelengths), .wavelengths = wavelengths});
@@ -192,6 +197,7 @@ render::SceneSetup on_rung(render::SceneSetup setup, const Rung& rung) {
         setup.camera.dust.reset();
     }
     setup.camera.model = rung.model;
+    setup.scene.precision = rung.hits.value_or(setup.scene.precision);
     if (rung.wavelengths) {
         setup.spectral.layers = *rung.wavelengths;
         setup.spectral.strata_per_layer = 1;
@@ -245,7 +251,9 @@ std::vector<MeasuredRung> measure_tradeoff(const render::SceneSetup& setup, cons
     const double steps = static_cast<double>(rungs.size()) + 1.0;
     progress(kReferenceRung, 0.0);
     const Rung exact{.name = kReferenceRung};
-    const render::SceneSetup setup_of_lens = on_rung(setup, exact);
+    render::SceneSetup judged = setup;
+    judged.scene.precision = scene::HitPrecision::in_double;  // of all rungs but the one that says otherwise
+    const render::SceneSetup setup_of_lens = on_rung(judged, exact);
     Reference reference{
         .camera = {setup_of_lens.camera, setup_of_lens.spectral, render::PixelFilter{}, settings.cache, true},
         .points = {},
@@ -254,7 +262,7 @@ std::vector<MeasuredRung> measure_tradeoff(const render::SceneSetup& setup, cons
     std::vector<MeasuredRung> measured;
     for (const Rung& rung : rungs) {
         progress(rung.name, (static_cast<double>(measured.size()) + 1.0) / steps);
-        measured.push_back(measure_rung(rung, setup, reference, settings));
+        measured.push_back(measure_rung(rung, judged, reference, settings));
     }
     compare_rungs(measured);
     return measured;

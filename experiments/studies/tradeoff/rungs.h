@@ -15,14 +15,16 @@ namespace lensproof::studies {
 
 inline constexpr const char* kReferenceRung = "exact-double";
 
-/// A lens model, and how many wavelengths a render samples (none: as many as the scene says).
+/// A lens model, how many wavelengths a render samples and who says which triangle a ray meets (none: as the scene has
+/// it).
 struct Rung {
     std::string name;
     render::LensModel model = render::LensModel::exact;
     std::optional<int> wavelengths = std::nullopt;
+    std::optional<scene::HitPrecision> hits = std::nullopt;
 };
 
-/// From the simplest to the reference, and that with fewer wavelengths.
+/// From the simplest to the reference; that with hits in float, and with fewer wavelengths.
 const std::vector<Rung>& ladder();
 
 /// The scene with the rung's camera. What only the exact lens has, blades and walls, its stray camera keeps.
@@ -52,7 +54,7 @@ void fields(JsonArchive& json, RungCost& cost);
 
 struct MeasuredRung {
     std::string name;
-    std::string not_applicable;  // why this lens has no such model; else empty
+    std::string not_applicable;  // why this lens has no such model, or the scene no use for it; else empty
     int samples = 0;             // of a pixel, of all seeds together
     formats::Image picture_rgb;  // linear, the mean over seeds
     FieldErrors field;

@@ -206,7 +206,7 @@ std::vector<findings::Subject> model_subjects(const std::vector<MeasuredScene>& 
                 model = models.end() - 1;
             }
             if (!rung.not_applicable.empty()) {
-                model->facts.push_back({measured.scene.title, "not for this lens: " + rung.not_applicable});
+                model->facts.push_back({measured.scene.title, "not here: " + rung.not_applicable});
             } else if (scenes.size() == 1) {
                 model->facts = facts_of(rung, measured.scene.settings.noise);
             } else {

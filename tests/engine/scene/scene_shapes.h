@@ -28,8 +28,9 @@ inline Matrix3 scaled(double x, double y, double z) {
 }
 
 /// A scene of one object.
-inline SceneGeometry scene_of(Shape shape, const AffineMap& to_world = {}) {
-    return {{std::move(shape)}, {{.shape = 0, .to_world = to_world}}};
+inline SceneGeometry scene_of(Shape shape, const AffineMap& to_world = {},
+                              HitPrecision precision = HitPrecision::in_double) {
+    return {{std::move(shape)}, {{.shape = 0, .to_world = to_world}}, precision};
 }
 
 /// An icosahedron with its triangles cut into four `levels` times, all vertices on a sphere; closed, 20·4^levels

@@ -282,6 +282,45 @@ TEST(SceneGeometry, ClosedMeshesAreTightAtEdgesAndNearlyAtVertices) {
     EXPECT_LE(leaks.at_vertices, 19 + 4 * 4);  // 19 were seen, with a deviation of 4
 }
 
+// In float as well.
+TEST(SceneGeometry, InFloatClosedMeshesAreTightAtEdges) {
+    const TriangleMesh mesh = icosphere(100.0, 3);
+    const AffineMap far_away = at({31.0, -170.0, 905.0}, about_x(33.0));
+    const SceneGeometry moved = scene_of(mesh, far_away, HitPrecision::in_float);
+    const SceneGeometry instanced({mesh},
+                                  {{.shape = 0, .to_world = far_away}, {.shape = 0, .to_world = at({0, 0, -999})}},
+                                  HitPrecision::in_float);
+    const Leaks leaks =
+        leaks_of(std::get<TriangleMesh>(moved.shape(0)), far_away.translation, {&moved, &instanced}, 0.15);
+    EXPECT_EQ(leaks.at_edges, 0);
+    EXPECT_LE(leaks.at_vertices, 19 + 4 * 4);
+}
+
+// Rays that meet a mesh in double do so in float, in the same point but where they pass an edge as near as floats are
+// apart (3 of 100,000 here): then by no more than that.
+TEST(SceneGeometry, InFloatRaysMeetWhatTheyMeetInDouble) {
+    const AffineMap far_away = at({31.0, -170.0, 905.0}, about_x(33.0));
+    const SceneGeometry in_double = scene_of(icosphere(100.0, 4), far_away);
+    const SceneGeometry in_float = scene_of(icosphere(100.0, 4), far_away, HitPrecision::in_float);
+    const double float_mm = 0x1p-17 * 1100.0;  // of how far the mesh lies from the world's origin
+    std::mt19937_64 random(41);
+    int others = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const Vec3d origin = far_away.translation + 300.0 * random_direction(random);
+        const Vec3d direction =
+            normalized(far_away.translation + uniform(random, 0.0, 95.0) * random_direction(random) - origin);
+        const auto expected = intersect(in_double, origin, direction, 0.0, kInfinity);
+        const auto found = intersect(in_float, origin, direction, 0.0, kInfinity);
+        ASSERT_TRUE(expected && found);
+        others += found->point == expected->point ? 0 : 1;
+        EXPECT_LT(length(found->point - expected->point), float_mm);
+        EXPECT_GT(found->error_mm, expected->error_mm);
+        const Vec3d out = std::copysign(1.0, -dot(direction, found->geometric_normal)) * found->geometric_normal;
+        EXPECT_FALSE(is_occluded(in_float, ray_origin(*found, out), found->point + 1000.0 * out));
+    }
+    EXPECT_LT(others, 30);
+}
+
 // A few triangles are met in double, in seams as wide as its rounding; those of a small mesh beside a large one, too.
 TEST(SceneGeometry, AFewTrianglesAreTightAtVerticesToo) {
     for (const Vec3d& place : {Vec3d{31.0, -170.0, 905.0}, Vec3d{3e5, -1e5, 9e5}}) {
@@ -358,6 +397,7 @@ TEST(SceneGeometry, NothingShadowsItselfAtAnyScale) {
         // of it, which its triangles measure, slopes of 1e-3 keep clear of that but for edges that are as near as 1e-3
         // of it.
         expect_none(self_hits(scene_of(icosphere(size, 4), offset), size, true, 1e-2), size);
+        expect_none(self_hits(scene_of(icosphere(size, 4), offset, HitPrecision::in_float), size, true, 1e-2), size);
     }
 }
 
@@ -451,7 +491,7 @@ TEST(SceneGeometry, NothingIsMetByRaysThatAreNone) {
 
 /// Spheres, quads, a mesh and one that stands there twice: with a few of the first two, and with so many that Embree
 /// finds them.
-SceneGeometry crowd(int spheres_and_quads, std::mt19937_64& random) {
+SceneGeometry crowd(int spheres_and_quads, std::mt19937_64& random, HitPrecision precision = HitPrecision::in_double) {
     std::vector<Shape> shapes = {box_mesh(2.0F), icosphere(1.5, 2)};
     const auto somewhere = [&] {
         return at({uniform(random, -9, 9), uniform(random, -9, 9), uniform(random, -9, 9)},
@@ -464,7 +504,7 @@ SceneGeometry crowd(int spheres_and_quads, std::mt19937_64& random) {
         objects.push_back({.shape = static_cast<std::uint32_t>(shapes.size()), .to_world = somewhere()});
         shapes.push_back(i % 2 == 0 ? Shape{Sphere{1.0 + 0.1 * i}} : Shape{Quad{3.0, 2.0}});
     }
-    return {shapes, objects};
+    return {shapes, objects, precision};
 }
 
 // Many at once meet what each meets by itself, to the bit; what is not finite meets nothing.
@@ -475,6 +515,8 @@ TEST(SceneGeometry, ManyRaysAtOnceMeetWhatEachDoes) {
         scenes.push_back(crowd(spheres_and_quads, random));
     }
     scenes.push_back(scene_of(icosphere(5.0, 0), at({0.5, 0.0, 1.0})));  // of few triangles
+    scenes.push_back(crowd(5, random, HitPrecision::in_float));
+    scenes.push_back(crowd(40, random, HitPrecision::in_float));
     for (const SceneGeometry& scene : scenes) {
         std::vector<Ray<double>> rays;
         std::vector<Segment> segments;
