@@ -1,16 +1,16 @@
 """Samples a second of CPU, beside another renderer's: mitsuba_benchmark.py LENSPROOF SCENES FOLDER
 
 LENSPROOF is the built program, SCENES the folder of cornell_box.toml and checker_wall.toml, FOLDER keeps what pip
-fetched: Mitsuba 3. The Cornell box through a pinhole, and the checkered wall through a thin lens and, by lensproof
-alone, through the exact one: the same geometry, spectra and path lengths, four wavelengths a path, one thread each, in
-turns. The thin lenses have the exact one's focal length, so that all look at the same. What a sample costs is the
+fetched: Mitsuba 3. The Cornell box through a pinhole, by itself and with a bumpy ball of 358,800 triangles in it, by
+lensproof also with hits in float; and the checkered wall through a thin lens and, by lensproof alone, through the exact
+one: the same geometry, spectra and path lengths, four wavelengths a path, one thread each, in turns. The thin lenses have the exact one's focal length, so that all look at the same. What a sample costs is the
 difference of a long run and a short one, so that starting, reading and writing count for neither; of Mitsuba's its first
 run, which compiles, counts for nothing. Medians of five.
 
 A sample's noise is what two runs with other seeds differ by; the time to one percent of it is what users wait for.
 Mitsuba's `llvm_ad_spectral` wants a libLLVM, the newest that is found.
 """
-import math, os, pathlib, resource, shutil, statistics, subprocess, sys, tempfile, time, tomllib
+import array, math, os, pathlib, resource, shutil, statistics, struct, subprocess, sys, tempfile, time, tomllib
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "validation"))
@@ -46,6 +46,40 @@ def scene_file(scenes, folder, name, changes):
     return file, tomllib.loads(text)
 
 
+BALL = {"file": "ball.ply", "rows": 300, "columns": 600, "radius_mm": 80.0, "translate_mm": [185.0, 250.0, 170.0]}
+
+
+def write_ball(file):
+    """A binary PLY of a sphere with bumps: triangles that share vertices, none at the poles."""
+    rows, columns, radius = BALL["rows"], BALL["columns"], BALL["radius_mm"]
+    vertices, faces = array.array("f"), bytearray()
+    for row in range(rows):
+        theta = 0.001 + (math.pi - 0.002) * row / (rows - 1)
+        for column in range(columns):
+            phi = 2 * math.pi * column / columns
+            r = radius * (1 + 0.05 * math.sin(40 * phi) * math.sin(30 * theta))
+            vertices.extend((r * math.sin(theta) * math.cos(phi), r * math.sin(theta) * math.sin(phi),
+                             r * math.cos(theta)))
+    for row in range(rows - 1):
+        for column in range(columns):
+            a, b = row * columns + column, row * columns + (column + 1) % columns
+            faces += struct.pack("<B3iB3i", 3, a, a + columns, b, 3, b, a + columns, b + columns)
+    if sys.byteorder == "big":
+        vertices.byteswap()
+    header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {rows * columns}\nproperty float x\n"
+              f"property float y\nproperty float z\nelement face {2 * (rows - 1) * columns}\n"
+              "property list uchar int vertex_indices\nend_header\n")
+    file.write_bytes(header.encode() + vertices.tobytes() + bytes(faces))
+
+
+def add_ball(file):
+    """To the scene."""
+    write_ball(file.parent / BALL["file"])
+    with file.open("a") as scene:
+        scene.write(f'\n[[objects]]\nname = "ball"\nshape = "mesh"\nfile = "{BALL["file"]}"\nmaterial = "white"\n'
+                    f'translate_mm = {BALL["translate_mm"]}\n')
+
+
 def film(file):
     """Its irradiance, [row, column]."""
     import OpenEXR
@@ -55,12 +89,12 @@ def film(file):
 
 
 class Lensproof:
-    def __init__(self, program, scene):
-        self.program, self.scene, self.picture = program, scene, scene.with_suffix(".exr")
+    def __init__(self, program, scene, *options):
+        self.program, self.scene, self.picture, self.options = program, scene, scene.with_suffix(".exr"), options
 
     def run(self, samples, seed, threads):
         subprocess.run([self.program, "render", str(self.scene), "-o", str(self.picture), "--seed", str(seed), "--spp",
-                        str(samples), "--threads", str(threads), "--quiet"], check=True, stdin=subprocess.DEVNULL,
+                        str(samples), "--threads", str(threads), "--quiet", *self.options], check=True, stdin=subprocess.DEVNULL,
                        capture_output=True)
 
     def render(self, samples, seed):
@@ -208,17 +242,23 @@ def main():
           *PACKAGES, newest_llvm())
     with tempfile.TemporaryDirectory() as scratch:
         box, _ = scene_file(scenes, pathlib.Path(scratch), "cornell_box", [])
+        ball, _ = scene_file(scenes, pathlib.Path(scratch), "cornell_box", [])
+        add_ball(ball)
         wall, _ = scene_file(scenes, pathlib.Path(scratch), "checker_wall", [])
         thin, _ = scene_file(scenes, pathlib.Path(scratch), "checker_wall", [
             ('lens = "double-gauss-lowenthal"', f'model = "thin-lens"\nfocal_length_mm = {FOCAL_LENGTH_MM}')])
-        for scene, ours in (("Cornell box", {"lensproof, pinhole": box}),
-                            ("checkered wall", {"lensproof, thin lens": thin, "lensproof, exact lens": wall})):
-            cameras = {name: Lensproof(program, file) for name, file in ours.items()}
-            found = in_turns(cameras)
+        for scene, file, ours in (
+                ("Cornell box", box, {"lensproof, pinhole": Lensproof(program, box)}),
+                ("Cornell box and a ball", ball, {
+                    "lensproof, pinhole": Lensproof(program, ball),
+                    "lensproof, hits in float": Lensproof(program, ball, "--precision", "float")}),
+                ("checkered wall", thin, {"lensproof, thin lens": Lensproof(program, thin),
+                                          "lensproof, exact lens": Lensproof(program, wall)})):
+            found = in_turns(ours)
             for variant in VARIANTS:
-                found |= theirs(folder, variant, next(iter(ours.values())))
+                found |= theirs(folder, variant, file)
             tell(scene, found)
-            for name, camera in cameras.items() if os.cpu_count() > 1 else ():
+            for name, camera in ours.items() if os.cpu_count() > 1 else ():
                 print(f"{name}: two threads are {camera.gain_of_two_threads():.2f} times as fast as one")
     return 0
 

@@ -136,9 +136,11 @@ def mitsuba_scene(mi, scene, folder):
                                       "reflectance": spectrum(folder, m["reflectance"], "reflectance")}}
                  for m in scene["materials"]}
     for i, thing in enumerate(scene["objects"]):
-        file = folder / f"polygon{i}.ply"
-        write_polygon(file, thing["vertices_mm"])
+        file = folder / thing.get("file", f"polygon{i}.ply")
+        if "vertices_mm" in thing:
+            write_polygon(file, thing["vertices_mm"])
         made[f"object{i}"] = {"type": "ply", "filename": str(file), "face_normals": True,
+                              "to_world": mi.ScalarTransform4f().translate(thing.get("translate_mm", [0.0, 0.0, 0.0])),
                               "bsdf": materials[thing["material"]]}
         if thing["name"] == light["object"]:
             made[f"object{i}"]["emitter"] = {"type": "area", "radiance": lamp_radiance(mi, folder, light)}
