@@ -109,6 +109,7 @@ class Pack {
     friend Mask operator>(const Pack& a, const Pack& b) { return Mask(a.lanes_ > b.lanes_); }
     friend Mask operator<=(const Pack& a, const Pack& b) { return Mask(a.lanes_ <= b.lanes_); }
     friend Mask operator>=(const Pack& a, const Pack& b) { return Mask(a.lanes_ >= b.lanes_); }
+    friend Mask operator==(const Pack& a, const Pack& b) { return Mask(a.lanes_ == b.lanes_); }
 
     friend Pack whole(const Pack& a) { return Pack(std::experimental::trunc(a.lanes_)); }
     friend Pack abs(const Pack& a) { return Pack(std::experimental::abs(a.lanes_)); }

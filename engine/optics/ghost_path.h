@@ -37,8 +37,8 @@ struct TravellingRay {
     T last_vertex_z = T(0);
     Vec3<T> direction;
     T optical_path = T(0);
-    T at_surfaces = T(1);    // what surfaces left of its light,
-    T optical_depth = T(0);  // and the glass between them (`fading`)
+    LeftBySurfaces<T> at_surfaces;  // of its light,
+    T optical_depth = T(0);         // and the glass between them (`fading`)
     RayStatus status = RayStatus::ok;
     int surface = -1;  // where the status befell it
 
@@ -55,7 +55,7 @@ struct TravellingRay {
 
     template <class OfLens>
     [[nodiscard]] constexpr T transmittance(const OfLens& lens) const {
-        return lens.attenuation.empty() ? at_surfaces : T(at_surfaces * fading(optical_depth));
+        return lens.attenuation.empty() ? at_surfaces.value() : T(at_surfaces.value() * fading(optical_depth));
     }
 
     constexpr void end(RayStatus why, int at) {
@@ -80,7 +80,7 @@ constexpr bool reflect_at_sensor(const OfLens& lens, const StrayMirrors<T>& mirr
     ray.optical_path = ray.optical_path + image.distance;
     ray.cross(lens, sensor, true, image.distance);
     ray.direction.z = -ray.direction.z;
-    ray.at_surfaces = ray.at_surfaces * mirrors.sensor;
+    ray.at_surfaces.pass(mirrors.sensor);
     return true;
 }
 
@@ -204,15 +204,16 @@ template <class OfLens, class T>
     }
     const TraceSurface<T>& surface = lens.surfaces[static_cast<std::size_t>(index)];
     const typename OfLens::Special* special = special_of(lens, surface);
-    const T& index_before = forward ? surface.index_before : surface.index_after;
-    const T& index_after = forward ? surface.index_after : surface.index_before;
-    T passing = special != nullptr && !special->coating.is_bare()
-                    ? coated_transmittance(surface, *special, forward, at.cos_incidence)
-                    : fresnel_transmittance(index_before, index_after, at.cos_incidence, at.bent.cos_refraction);
-    if (special != nullptr) {
-        passing = passing * at.open;
+    if (special != nullptr && !special->coating.is_bare()) {
+        ray.at_surfaces.pass(coated_transmittance(surface, *special, forward, at.cos_incidence));
+    } else {
+        ray.at_surfaces.pass(fresnel_transmittance(forward ? surface.forward_ratio : surface.reverse_ratio,
+                                                   at.cos_incidence, at.bent.cos_refraction));
     }
-    ray.at_surfaces = ray.at_surfaces * passing;
+    if (special != nullptr) {
+        ray.at_surfaces.pass(at.open);
+    }
+    ray.at_surfaces.end_surface();
     ray.direction = special != nullptr ? special->from_own(at.bent.direction) : at.bent.direction;
     return true;
 }
@@ -227,7 +228,8 @@ constexpr std::pair<RayStatus, bool> run_to_surface(const OfLens& lens, int inde
         if (what == AtSurface::pass) {
             return pass_surface(lens, index, forward, at, ray);
         }
-        ray.at_surfaces = ray.at_surfaces * reflected_at(lens, index, forward, mirrors, at);
+        ray.at_surfaces.pass(reflected_at(lens, index, forward, mirrors, at));
+        ray.at_surfaces.end_surface();
         turn_back(lens, index, at, ray);
         return true;
     });

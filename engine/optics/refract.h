@@ -74,21 +74,34 @@ constexpr Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal,
     return refract(direction, normal, cos_incidence, dot(across, across), index_ratio);
 }
 
+/// A part of a whole: the product of many takes one division.
+template <class T>
+struct Fraction {
+    T part = T(1);
+    T whole = T(1);
+
+    [[nodiscard]] constexpr T value() const { return part / whole; }
+};
+
 /// The transmittance of an uncoated surface for unpolarised light (Fresnel; Born & Wolf, Principles of Optics, 7th ed.,
-/// §1.5.2, eqs. 21a, 21b).
+/// §1.5.2, eqs. 21a, 21b), by the ratio of the indices before and after.
 ///
 /// Of either polarisation T = 4 a b / (a + b)², with a and b the two media's n cos i (s), or each index with the other
-/// cosine (p). Formed as 4 r (1 − r), r the lesser one's part of the sum: near grazing, where little passes, it keeps
-/// the digits that 1 − R loses, and two tiny cosines make no 0 / 0. Between equal indices it is exactly 1.
+/// cosine (p); the product a b is the same for both, and so their mean is
+///
+///     T = 2 a b ((a_s + b_s)² + (a_p + b_p)²) / ((a_s + b_s)² (a_p + b_p)²).
+///
+/// Near grazing, where little passes, it keeps the digits that 1 − R loses. Between equal indices it is exactly 1.
 template <class T>
-constexpr T fresnel_transmittance(const T& index_before, const T& index_after, const T& cos_incidence,
-                                  const T& cos_refraction) {
-    const auto passing = [](const T& a, const T& b) {
-        const T r = select(a < b, a, b) / (a + b);
-        return r * (T(1) - r);
-    };
-    return T(2) * (passing(index_before * cos_incidence, index_after * cos_refraction) +
-                   passing(index_after * cos_incidence, index_before * cos_refraction));
+constexpr Fraction<T> fresnel_transmittance(const T& index_ratio, const T& cos_incidence, const T& cos_refraction) {
+    const T a = index_ratio * cos_incidence;
+    const T s = a + cos_refraction;
+    const T p = cos_incidence + index_ratio * cos_refraction;
+    const T s2 = s * s;
+    const T p2 = p * p;
+    const auto is_same = index_ratio == T(1);
+    return {.part = select(is_same, T(1), (a + a) * cos_refraction * (s2 + p2)),
+            .whole = select(is_same, T(1), s2 * p2)};
 }
 
 }  // namespace lensproof::optics

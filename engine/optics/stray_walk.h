@@ -280,8 +280,8 @@ class StrayWalk {
             run_to_surface<Rims::follow>(lens_, 0, true, AtSurface::pass, mirrors_, passed);
             run_to_surface<Rims::follow>(lens_, 0, true, AtSurface::reflect, mirrors_, reflected);
             const bool is_through = passed.status == RayStatus::ok;
-            const double passing = is_through ? passed.at_surfaces : 0.0;
-            const double going_on = passing + reflected.at_surfaces;
+            const double passing = is_through ? passed.at_surfaces.value() : 0.0;
+            const double going_on = passing + reflected.at_surfaces.value();
             light.weight *= going_on;
             if (numbers_() * going_on < passing) {
                 witness_.at_surface(AtSurface::pass, 0, true, passed.global());
@@ -312,7 +312,7 @@ class StrayWalk {
         }
         TravellingRay<double> passed = at.arrived;
         const bool is_through = pass_surface(lens_, at.surface, at.forward, at.meeting, passed);
-        const double passing = is_through ? passed.at_surfaces / at.open : 0.0;
+        const double passing = is_through ? passed.at_surfaces.value() / at.open : 0.0;
         const double reflecting = reflects_by_blades(surface)
                                       ? 0.0
                                       : reflected_at(lens_, at.surface, at.forward, mirrors_, at.meeting) / at.open;

@@ -184,6 +184,35 @@ constexpr T fading(const T& optical_depth) {
     }
 }
 
+/// What surfaces have left of a ray's light, as a fraction that is divided once for some surfaces: roots and divisions
+/// are what processors do most slowly (`lensproof_benchmark`, batch/tessar/double). For so many that the whole of rays
+/// that graze, between indices as near to each other as numbers are, stays in range: no cosine behind such a surface is
+/// below √(2ε), and a whole not below its fourth power.
+template <class T>
+class LeftBySurfaces {
+  public:
+    /// Whether the fraction is divided after the surface that so many stood before.
+    static constexpr bool is_divided_after(int before) { return before % kSurfaces == kSurfaces - 1; }
+
+    constexpr void pass(const T& power) { left_.part = left_.part * power; }
+    constexpr void pass(const Fraction<T>& power) {
+        pass(power.part);
+        left_.whole = left_.whole * power.whole;
+    }
+    constexpr void end_surface() {
+        if (is_divided_after(surfaces_++)) {
+            left_ = {.part = left_.value()};
+        }
+    }
+    [[nodiscard]] constexpr T value() const { return left_.value(); }
+
+  private:
+    static constexpr int kSurfaces = std::is_same_v<T, float> ? 2 : 8;
+
+    Fraction<T> left_;
+    int surfaces_ = 0;
+};
+
 /// `trace`, compiled for each makeup by itself, so that simple lenses pay for nothing. `OfLens`: a TraceLens<T>, or one
 /// wavelength of a LensView<T>.
 template <Direction direction, Rims rims, LensMakeup makeup, class OfLens, class T, class Visitor>
@@ -197,13 +226,15 @@ constexpr TracedRay<T> trace_through(const OfLens& lens, const Ray<T>& ray, Visi
     T last_vertex_z = T(0);
     Vec3<T> ray_direction = ray.direction;
     T optical_path = T(0);
-    T at_surfaces = T(1);
+    LeftBySurfaces<T> at_surfaces;
     T optical_depth = T(0);
     const bool absorbs = may_absorb && !lens.attenuation.empty();
     RayStatus status = RayStatus::ok;
     int ended_at = -1;
     const auto global = [&] { return Ray<T>{{origin.x, origin.y, origin.z + last_vertex_z}, ray_direction}; };
-    const auto transmittance = [&] { return absorbs ? at_surfaces * fading(optical_depth) : at_surfaces; };
+    const auto transmittance = [&] {
+        return absorbs ? at_surfaces.value() * fading(optical_depth) : at_surfaces.value();
+    };
     const auto report = [&](int index, RayStatus here) {
         visit(SurfaceEvent<T>{index, global(), optical_path, transmittance(), here});
     };
@@ -315,20 +346,20 @@ constexpr TracedRay<T> trace_through(const OfLens& lens, const Ray<T>& ray, Visi
             return traced();
         }
         ray_direction = bent.direction;
-        T passing = T(1);
         if (has_specials && special != nullptr && !special->coating.is_bare()) {
-            passing = coated_transmittance(surface, *special, direction == Direction::forward, meeting.cos_incidence);
+            at_surfaces.pass(
+                coated_transmittance(surface, *special, direction == Direction::forward, meeting.cos_incidence));
         } else if (!is_thin) {
-            passing = fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
+            at_surfaces.pass(fresnel_transmittance(ratio, meeting.cos_incidence, bent.cos_refraction));
         }
         if constexpr (has_specials) {
             if (special != nullptr) {
                 ray_direction = special->from_own(ray_direction);
-                passing = passing * open;
+                at_surfaces.pass(open);
                 optical_path = optical_path + added_path;
             }
         }
-        at_surfaces = at_surfaces * passing;
+        at_surfaces.end_surface();
         report(index, here);
     }
     if (status == RayStatus::ok) {

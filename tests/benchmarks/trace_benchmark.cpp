@@ -156,8 +156,9 @@ void time_plain_loop(benchmark::State& state, const std::string& name) {
                 }
                 along = bent.direction;
                 if (with_fresnel) {
-                    transmittance *= optics::fresnel_transmittance(surface->index_after, surface->index_before,
-                                                                   met.cos_incidence, bent.cos_refraction);
+                    transmittance *=
+                        optics::fresnel_transmittance(surface->reverse_ratio, met.cos_incidence, bent.cos_refraction)
+                            .value();
                 }
             }
             benchmark::DoNotOptimize(origin);

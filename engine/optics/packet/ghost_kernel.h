@@ -69,7 +69,8 @@ class GhostTracer {
                 {direction_.x[lane], direction_.y[lane], direction_.z[lane]}};
     }
     [[nodiscard]] double transmittance(int lane) const {
-        return lens_.absorbs ? at_surfaces_[lane] * lane_fading(optical_depth_[lane]) : at_surfaces_[lane];
+        const double at_surfaces = at_surfaces_.part[lane] / at_surfaces_.whole[lane];
+        return lens_.absorbs ? at_surfaces * lane_fading(optical_depth_[lane]) : at_surfaces;
     }
     [[nodiscard]] WorstLimit worst(int lane) const { return {others_[lane], ratio_squared_[lane]}; }
 
@@ -83,6 +84,8 @@ class GhostTracer {
         }
     }
 
+    void pass(const Numbers& power) { at_surfaces_.part = at_surfaces_.part * power; }
+
     void reflect_at_sensor() {
         going_ = going_ && direction_.z > Numbers(0.0);
         const Numbers distance = (Numbers(ghost_.image_z - last_vertex_z_) - origin_.z) / direction_.z;
@@ -92,7 +95,7 @@ class GhostTracer {
         // Behind the last surface.
         cross(lens_.count - 1, false, distance);
         direction_.z = -direction_.z;
-        at_surfaces_ = at_surfaces_ * Numbers(ghost_.mirrors.sensor);
+        pass(Numbers(ghost_.mirrors.sensor));
     }
 
     struct Meeting {
@@ -207,7 +210,7 @@ class GhostTracer {
         if (reflects) {
             direction = reflect(direction, met.normal, cos_incidence);
             if (by_blades) {
-                at_surfaces_ = at_surfaces_ * (Numbers(ghost_.mirrors.blades) * (Numbers(1.0) - open));
+                pass(Numbers(ghost_.mirrors.blades) * (Numbers(1.0) - open));
             } else {
                 const Numbers reflected =
                     is_coated
@@ -216,19 +219,25 @@ class GhostTracer {
                         : select(bent.transmitted,
                                  fresnel_reflectance(media.before, media.after, cos_incidence, bent.cos_refraction),
                                  Numbers(1.0));
-                at_surfaces_ = at_surfaces_ * (open * reflected);
+                pass(open * reflected);
             }
         } else {
             going_ = going_ && bent.transmitted;
             direction = bent.direction;
-            Numbers passing =
-                is_coated ? coated(&CoatedPowers<Numbers>::transmitted, lane_coated_transmittance<double>, index,
-                                   is_forward, media, met.at)
-                          : fresnel_transmittance(media.before, media.after, cos_incidence, bent.cos_refraction);
-            if (special != nullptr) {
-                passing = passing * open;
+            if (is_coated) {
+                pass(coated(&CoatedPowers<Numbers>::transmitted, lane_coated_transmittance<double>, index, is_forward,
+                            media, met.at));
+            } else {
+                const auto passing = fresnel_transmittance(media.ratio, cos_incidence, bent.cos_refraction);
+                pass(passing.part);
+                at_surfaces_.whole = at_surfaces_.whole * passing.whole;
             }
-            at_surfaces_ = at_surfaces_ * passing;
+            if (special != nullptr) {
+                pass(open);
+            }
+        }
+        if (LeftBySurfaces<double>::is_divided_after(surfaces_++)) {
+            at_surfaces_ = {.part = at_surfaces_.value()};
         }
         direction_ = special != nullptr ? special->from_own(direction) : direction;
     }
@@ -254,7 +263,8 @@ class GhostTracer {
 
     Vec3<Numbers> origin_;  // z from the last vertex passed
     Vec3<Numbers> direction_;
-    Numbers at_surfaces_{1.0};
+    Fraction<Numbers> at_surfaces_;  // as LeftBySurfaces has it
+    int surfaces_ = 0;
     Numbers optical_depth_{0.0};
     Numbers others_{-1.0};  // WorstLimit
     Numbers ratio_squared_{0.0};

@@ -15,6 +15,7 @@
 #include "engine/optics/packet/trace_kernels.h"
 #include "engine/optics/refract.h"
 #include "engine/optics/surface_shape.h"
+#include "engine/optics/trace.h"
 
 namespace lensproof::optics {
 
@@ -40,6 +41,9 @@ class BlockTracer {
         }
         for (int step = 0; step < lens_.count; ++step) {
             pass(kForward ? step : lens_.count - 1 - step);
+            if (carry != Carry::geometry && LeftBySurfaces<Scalar>::is_divided_after(step)) {
+                divide();
+            }
         }
         for (int packet = 0; packet < packets_; ++packet) {
             finish(packet, count);
@@ -89,7 +93,8 @@ class BlockTracer {
         store(packet, {{Numbers::load(rays_.x + i), Numbers::load(rays_.y + i), Numbers::load(rays_.z + i)},
                        {Numbers::load(rays_.dx + i), Numbers::load(rays_.dy + i), Numbers::load(rays_.dz + i)}});
         set_going(packet, is_ray(packet, count));
-        Numbers(Scalar(1)).store(transmittance_.data() + packet * kLanes);
+        Numbers(Scalar(1)).store(part_.data() + packet * kLanes);
+        Numbers(Scalar(1)).store(whole_.data() + packet * kLanes);
         Numbers(Scalar(0)).store(path_.data() + packet * kLanes);
         Numbers(Scalar(0)).store(depth_.data() + packet * kLanes);
     }
@@ -117,9 +122,21 @@ class BlockTracer {
         }
     }
 
+    [[nodiscard]] Numbers left_by_surfaces(int packet) const {
+        return Numbers::load(part_.data() + packet * kLanes) / Numbers::load(whole_.data() + packet * kLanes);
+    }
+
+    /// As `LeftBySurfaces` is, after some surfaces.
+    void divide() {
+        for (int packet = 0; packet < packets_; ++packet) {
+            left_by_surfaces(packet).store(part_.data() + packet * kLanes);
+            Numbers(Scalar(1)).store(whole_.data() + packet * kLanes);
+        }
+    }
+
     /// What surfaces and media left of each ray.
     [[nodiscard]] Numbers transmittances(int packet) const {
-        const Numbers at_surfaces = Numbers::load(transmittance_.data() + packet * kLanes);
+        const Numbers at_surfaces = left_by_surfaces(packet);
         if (!lens_.absorbs) {
             return at_surfaces;
         }
@@ -294,10 +311,18 @@ class BlockTracer {
     /// Takes a surface's loss from the rays in `lanes`, where it is asked for.
     void add_loss(int packet, const Numbers& passing, const Mask& lanes) {
         if constexpr (carry != Carry::geometry) {
-            Scalar* transmittance = transmittance_.data() + packet * kLanes;
-            const Numbers so_far = Numbers::load(transmittance);
-            select(lanes, so_far * passing, so_far).store(transmittance);
+            multiply(part_.data() + packet * kLanes, passing, lanes);
         }
+    }
+    void add_loss(int packet, const Fraction<Numbers>& passing, const Mask& lanes) {
+        if constexpr (carry != Carry::geometry) {
+            multiply(part_.data() + packet * kLanes, passing.part, lanes);
+            multiply(whole_.data() + packet * kLanes, passing.whole, lanes);
+        }
+    }
+    static void multiply(Scalar* numbers, const Numbers& by, const Mask& lanes) {
+        const Numbers so_far = Numbers::load(numbers);
+        select(lanes, so_far * by, so_far).store(numbers);
     }
 
     /// The same for a packet of which some rays end here or pass a rim: kept apart, since it is rare.
@@ -354,13 +379,13 @@ class BlockTracer {
             add_path(packet, media, met.distance, fate.met);
             add_depth<per_lane>(here, packet, met.distance, fate.met);
             if constexpr (carry != Carry::geometry) {
-                Numbers passing(Scalar(1));
                 if (!special.coating.is_bare()) {
-                    passing = coated_transmittances<per_lane>(here, packet, media, met.cos_incidence, fate.on);
+                    add_loss(packet, coated_transmittances<per_lane>(here, packet, media, met.cos_incidence, fate.on),
+                             fate.on);
                 } else if (special.thin.kind == ThinKind::none) {
-                    passing = fresnel(media, met, bent);
+                    add_loss(packet, fresnel(media, met, bent), fate.on);
                 }
-                add_loss(packet, passing * open, fate.on);
+                add_loss(packet, open, fate.on);
             }
             if (special.thin.kind != ThinKind::none) {
                 add_path(packet, {.ratio = {}, .before = Numbers(Scalar(1)), .after = {}}, added_path, fate.on);
@@ -392,8 +417,9 @@ class BlockTracer {
         return bend_at_phase(linear, radial, meeting);
     }
 
-    static Numbers fresnel(const Media& media, const Intersection<Numbers>& met, const Refraction<Numbers>& bent) {
-        return fresnel_transmittance(media.before, media.after, met.cos_incidence, bent.cos_refraction);
+    static Fraction<Numbers> fresnel(const Media& media, const Intersection<Numbers>& met,
+                                     const Refraction<Numbers>& bent) {
+        return fresnel_transmittance(media.ratio, met.cos_incidence, bent.cos_refraction);
     }
 
     /// Of the rays in `lanes`, one by one; 1 for the others.
@@ -484,7 +510,8 @@ class BlockTracer {
     alignas(kPacketAlignment) Column dy_;
     alignas(kPacketAlignment) Column dz_;
     alignas(kPacketAlignment) Column path_;
-    alignas(kPacketAlignment) Column transmittance_;
+    alignas(kPacketAlignment) Column part_;  // of what surfaces left, as LeftBySurfaces has it
+    alignas(kPacketAlignment) Column whole_;
     alignas(kPacketAlignment) Column depth_;  // optical: Σ attenuation · distance
     alignas(kPacketAlignment) Column going_;  // 1: not ended, 0: ended or no ray
 };

@@ -11,8 +11,9 @@ namespace lensproof::scene {
 /// total reflection. (1 − T of Born & Wolf, §1.5.2.)
 inline double dielectric_reflectance(double eta, double cos_incidence) {
     const double sin2_incidence = (1.0 - cos_incidence) * (1.0 + cos_incidence);
-    const auto [cos_after, transmitted] = optics::cos_refraction(cos_incidence, sin2_incidence, 1.0 / eta);
-    return transmitted ? 1.0 - optics::fresnel_transmittance(1.0, eta, cos_incidence, cos_after) : 1.0;
+    const double ratio = 1.0 / eta;
+    const auto [cos_after, transmitted] = optics::cos_refraction(cos_incidence, sin2_incidence, ratio);
+    return transmitted ? 1.0 - optics::fresnel_transmittance(ratio, cos_incidence, cos_after).value() : 1.0;
 }
 
 /// A conductor's of index n + ik relative to the medium before it, at `cos_incidence` in [0, 1].

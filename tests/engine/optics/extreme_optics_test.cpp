@@ -190,15 +190,39 @@ TEST(ExtremeOptics, DirectionsStayUnitVectorsOver200Surfaces) {
 TEST(ExtremeOptics, FresnelKeepsTheDigitsOfGrazingLight) {
     for (double cosine = 1.0; cosine > 1e-150; cosine *= 1e-5) {
         const double cos_inside = std::sqrt((1.5 - 1.0) * (1.5 + 1.0) + cosine * cosine) / 1.5;
-        const double found = fresnel_transmittance(1.0, 1.5, cosine, cos_inside);
-        const auto exact =
-            static_cast<double>(fresnel_transmittance<Exact>(Exact(1), Exact(1.5), Exact(cosine), Exact(cos_inside)));
+        const double found = fresnel_transmittance(1.0 / 1.5, cosine, cos_inside).value();
+        const auto exact = static_cast<double>(
+            fresnel_transmittance<Exact>(Exact(1) / Exact(1.5), Exact(cosine), Exact(cos_inside)).value());
         EXPECT_NEAR(found, exact, 12 * kUlp * exact) << cosine;
     }
     for (const double cosine : {1.0, 0.3, 1e-9, 1e-100, 1e-161, 5e-300}) {
-        EXPECT_EQ(fresnel_transmittance(1.5, 1.5, cosine, cosine), 1.0) << cosine;
+        EXPECT_EQ(fresnel_transmittance(1.5 / 1.5, cosine, cosine).value(), 1.0) << cosine;
     }
-    EXPECT_EQ(fresnel_transmittance(1.0F, 1.0F, 1e-22F, 1e-22F), 1.0F);
+    EXPECT_EQ(fresnel_transmittance(1.0F / 1.0F, 1e-22F, 1e-22F).value(), 1.0F);
+}
+
+/// What `count` surfaces leave of light that grazes each, between indices as near to each other as numbers are, over
+/// the power of one.
+template <class T>
+double left_by_grazed(int count) {
+    const T epsilon = std::numeric_limits<T>::epsilon();
+    const T ratio = T(1) - epsilon;
+    const T cosine = std::sqrt(epsilon);
+    const auto one = fresnel_transmittance(ratio, cosine, std::sqrt(ratio * ratio * cosine * cosine + T(2) * epsilon));
+    LeftBySurfaces<T> left;
+    for (int i = 0; i < count; ++i) {
+        left.pass(one);
+        left.end_surface();
+    }
+    return static_cast<double>(left.value()) / std::pow(static_cast<double>(one.value()), count);
+}
+
+// The fraction of what surfaces leave keeps its range in float and in double: each step rounds by some ulps.
+TEST(ExtremeOptics, ManyGrazedSurfacesLeaveWhatEachLeaves) {
+    for (const int count : {1, 2, 7, 8, 9, 60}) {
+        EXPECT_NEAR(left_by_grazed<float>(count), 1.0, 4.0 * count * std::numeric_limits<float>::epsilon()) << count;
+        EXPECT_NEAR(left_by_grazed<double>(count), 1.0, 4.0 * count * std::numeric_limits<double>::epsilon()) << count;
+    }
 }
 
 /// A conic in glass of 1.5, as a special surface.
