@@ -185,9 +185,9 @@ constexpr T fading(const T& optical_depth) {
 }
 
 /// What surfaces have left of a ray's light, as a fraction that is divided once for some surfaces: roots and divisions
-/// are what processors do most slowly (`lensproof_benchmark`, batch/tessar/double). For so many that the whole of rays
-/// that graze, between indices as near to each other as numbers are, stays in range: no cosine behind such a surface is
-/// below √(2ε), and a whole not below its fourth power.
+/// are what processors do most slowly (`lensproof_benchmark`, batch/tessar/double). For so many that their product
+/// stays in range for rays that graze, between indices as near to each other as numbers are: of the two cosines there
+/// one is some √(2ε) at least, and so the whole, of their fourth powers, some 4ε².
 template <class T>
 class LeftBySurfaces {
   public:

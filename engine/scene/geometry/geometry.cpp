@@ -47,6 +47,13 @@ struct Query {
     [[nodiscard]] float embree_distance(double at) const {
         return static_cast<float>((at + 2.0 * behind_mm) * (1.0 + kFloatRoundings));
     }
+    [[nodiscard]] float embree_far() const {
+        if (is_occlusion && data->precision == HitPrecision::in_float) {
+            // Nobody tells what stands at the end from what stands before it.
+            return static_cast<float>(ray.to * (1.0 - kFloatRoundings));
+        }
+        return embree_distance(nearest.is_one() ? nearest.meeting.at : ray.to);
+    }
 };
 
 Query& query_of(embree::Context* context) {
@@ -76,7 +83,7 @@ RTCRay start(Query& query) {
             .dir_x = direction.x,
             .dir_y = direction.y,
             .dir_z = direction.z,
-            .tfar = query.embree_distance(query.nearest.is_one() ? query.nearest.meeting.at : ray.to),
+            .tfar = query.embree_far(),
             .mask = ~0U};
 }
 
@@ -163,9 +170,14 @@ void describe(const SceneGeometry::Data& data, const Stretch<double>& ray, const
     hit.primitive = nearest.primitive;
 }
 
-/// What of two points is asked for: from one end whatever the order, so that both orders agree to the last bit.
+/// What of two points is asked for: from one end whatever the order, so that both orders agree to the last bit. In
+/// float from the one that is nearer to the world's origin, where floats are finer.
 Stretch<double> stretch_between(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to) {
-    const bool is_in_order = std::tuple(from.x, from.y, from.z) < std::tuple(to.x, to.y, to.z);
+    const auto rank = [&](const Vec3d& end) {
+        const bool is_judged = scene.data().precision == HitPrecision::in_double;
+        return std::tuple(is_judged ? 0.0 : largest_coordinate(end), end.x, end.y, end.z);
+    };
+    const bool is_in_order = rank(from) < rank(to);
     const Vec3d along = is_in_order ? to - from : from - to;
     const double distance = length(along);
     constexpr double kRoundings = 64.0 * std::numeric_limits<double>::epsilon();

@@ -315,10 +315,34 @@ TEST(SceneGeometry, InFloatRaysMeetWhatTheyMeetInDouble) {
         others += found->point == expected->point ? 0 : 1;
         EXPECT_LT(length(found->point - expected->point), float_mm);
         EXPECT_GT(found->error_mm, expected->error_mm);
-        const Vec3d out = std::copysign(1.0, -dot(direction, found->geometric_normal)) * found->geometric_normal;
-        EXPECT_FALSE(is_occluded(in_float, ray_origin(*found, out), found->point + 1000.0 * out));
     }
     EXPECT_LT(others, 30);
+}
+
+// Outward from a point of a sphere of triangles nothing stands between it and lamps or suns at any distance, down to
+// 1e-2 above its surface (as in NothingShadowsItselfAtAnyScale), whichever end comes first; inward its far side does.
+TEST(SceneGeometry, InFloatAPointSeesWhatIsFar) {
+    const AffineMap far_away = at({31.0, -170.0, 905.0}, about_x(33.0));
+    const TriangleMesh mesh = icosphere(100.0, 4);
+    const SceneGeometry moved = scene_of(mesh, far_away, HitPrecision::in_float);
+    const SceneGeometry instanced({mesh},
+                                  {{.shape = 0, .to_world = far_away}, {.shape = 0, .to_world = at({0, 0, -1e9})}},
+                                  HitPrecision::in_float);
+    std::mt19937_64 random(43);
+    for (int i = 0; i < 100000; ++i) {
+        const SceneGeometry& scene = i % 2 == 0 ? moved : instanced;
+        const Vec3d origin = far_away.translation + 300.0 * random_direction(random);
+        const Vec3d target = far_away.translation + uniform(random, 0.0, 95.0) * random_direction(random);
+        const auto hit = intersect(scene, origin, normalized(target - origin), 0.0, kInfinity);
+        ASSERT_TRUE(hit);
+        const Vec3d n = hit->geometric_normal;
+        const Vec3d any = random_direction(random);
+        const Vec3d level = normalized(any - dot(any, n) * n);
+        const Vec3d out = normalized(level + std::exp(uniform(random, std::log(1e-2), 3.0)) * n);
+        const double distance = std::exp(uniform(random, std::log(300.0), std::log(1e8)));
+        EXPECT_FALSE(is_occluded(scene, ray_origin(*hit, out), hit->point + distance * out)) << distance;
+        EXPECT_TRUE(is_occluded(scene, ray_origin(*hit, -1.0 * n), hit->point - distance * n)) << distance;
+    }
 }
 
 // A few triangles are met in double, in seams as wide as its rounding; those of a small mesh beside a large one, too.
