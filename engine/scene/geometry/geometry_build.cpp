@@ -134,7 +134,7 @@ void bound_objects(SceneGeometry::Data& data) {
         const AffineMap& to_world = placed.place.to_world;
         placed.bounds = std::visit([&](const auto& shape) { return bounds_of(shape, to_world); }, *placed.shape);
         const Vec3d stretch = principal_stretches(to_world.linear);
-        placed.place.stretch_ratio = stretch.x / stretch.z;
+        placed.place.rounding_growth = stretch.x / stretch.z;
         placed.place.is_rigid = is_rigid(to_world.linear);
         placed.place.reach_mm = std::max(reach(placed.bounds), largest_coordinate(to_world.translation));
         if (!(placed.place.reach_mm <= kFarthest)) {
@@ -171,12 +171,24 @@ void choose_few_triangles(SceneGeometry::Data& data) {
                   [&](std::uint32_t object) { data.objects[object].is_of_few_triangles = true; });
 }
 
+/// Of a ray that both maps only carry from a frame to the other: each of the shape's axes by itself, so that axes which
+/// stay at right angles may be stretched by different factors. The general bound would be seen in float.
+double growth_axis_by_axis(const ObjectPlace& place) {
+    double growth = 1.0;
+    const std::array<Vec3d, 3> axes = {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        growth = std::max(growth, length(place.to_world.linear * axes[i]) * length(place.to_local.linear[i]));
+    }
+    return growth;
+}
+
 /// Where Embree's word is taken, what a ray leaves has to lie behind it in float.
 void state_roundings(SceneGeometry::Data& data) {
     for (PlacedObject& placed : data.objects) {
         if (data.precision == HitPrecision::in_float && std::holds_alternative<TriangleMesh>(*placed.shape) &&
             !placed.is_of_few_triangles) {
             placed.place.epsilon = std::numeric_limits<float>::epsilon();
+            placed.place.rounding_growth = growth_axis_by_axis(placed.place);
         }
     }
 }

@@ -139,7 +139,7 @@ SurfaceHit world_hit(const ObjectPlace& place, const ShapePoint& at) {
     // A point passes some ten operations on its way into the shape's frame and back, each with the rounding of the
     // largest number involved; a map that stretches unevenly carries an error along one direction to another.
     constexpr double kRoundings = 32.0;
-    hit.error_mm = kRoundings * place.epsilon * at.sharpness * place.stretch_ratio *
+    hit.error_mm = kRoundings * place.epsilon * at.sharpness * place.rounding_growth *
                    (largest_coordinate(hit.point) + place.reach_mm);
     return hit;
 }

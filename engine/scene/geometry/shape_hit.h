@@ -46,9 +46,9 @@ ShapePoint shape_point(const Quad& quad, double x, double y);
 struct ObjectPlace {
     AffineMap to_world;
     AffineMap to_local;
-    double stretch_ratio = 1.0;  // of the largest principal stretch to the smallest
-    bool is_rigid = true;        // `to_world` keeps lengths and angles, to rounding
-    double reach_mm = 0.0;       // of a coordinate that the map handles: the shape's, in the world, and the translation
+    double rounding_growth = 1.0;  // on the way through both maps, which may carry it from one axis to another
+    bool is_rigid = true;          // `to_world` keeps lengths and angles, to rounding
+    double reach_mm = 0.0;  // of a coordinate that the map handles: the shape's, in the world, and the translation
     double epsilon = std::numeric_limits<double>::epsilon();  // of the numbers in which rays meet it
 };
 

@@ -319,29 +319,36 @@ TEST(SceneGeometry, InFloatRaysMeetWhatTheyMeetInDouble) {
     EXPECT_LT(others, 30);
 }
 
-// Outward from a point of a sphere of triangles nothing stands between it and lamps or suns at any distance, down to
-// 1e-2 above its surface (as in NothingShadowsItselfAtAnyScale), whichever end comes first; inward its far side does.
+// Outward from a point of a sphere of triangles, stretched and sheared, nothing stands between it and lamps or suns at
+// any distance, down to 1e-2 above its surface (as in NothingShadowsItselfAtAnyScale), whichever end comes first;
+// inward its far side does. Rays leave by float's rounding: an uneven stretch along its axes adds nothing.
 TEST(SceneGeometry, InFloatAPointSeesWhatIsFar) {
-    const AffineMap far_away = at({31.0, -170.0, 905.0}, about_x(33.0));
-    const TriangleMesh mesh = icosphere(100.0, 4);
-    const SceneGeometry moved = scene_of(mesh, far_away, HitPrecision::in_float);
-    const SceneGeometry instanced({mesh},
-                                  {{.shape = 0, .to_world = far_away}, {.shape = 0, .to_world = at({0, 0, -1e9})}},
-                                  HitPrecision::in_float);
+    const Matrix3 sheared = {Vec3d{1.0, 0.4, 0.0}, Vec3d{0.0, 1.0, 0.3}, Vec3d{0.0, 0.0, 1.0}};
     std::mt19937_64 random(43);
-    for (int i = 0; i < 100000; ++i) {
-        const SceneGeometry& scene = i % 2 == 0 ? moved : instanced;
-        const Vec3d origin = far_away.translation + 300.0 * random_direction(random);
-        const Vec3d target = far_away.translation + uniform(random, 0.0, 95.0) * random_direction(random);
-        const auto hit = intersect(scene, origin, normalized(target - origin), 0.0, kInfinity);
-        ASSERT_TRUE(hit);
-        const Vec3d n = hit->geometric_normal;
-        const Vec3d any = random_direction(random);
-        const Vec3d level = normalized(any - dot(any, n) * n);
-        const Vec3d out = normalized(level + std::exp(uniform(random, std::log(1e-2), 3.0)) * n);
-        const double distance = std::exp(uniform(random, std::log(300.0), std::log(1e8)));
-        EXPECT_FALSE(is_occluded(scene, ray_origin(*hit, out), hit->point + distance * out)) << distance;
-        EXPECT_TRUE(is_occluded(scene, ray_origin(*hit, -1.0 * n), hit->point - distance * n)) << distance;
+    for (const Matrix3& shape : {kIdentity3, scaled(3.0, 0.3, 1.0), product(sheared, scaled(1.0, 0.2, 2.0))}) {
+        const AffineMap to_world = at({31.0, -170.0, 905.0}, product(about_x(33.0), shape));
+        const TriangleMesh mesh = icosphere(100.0, 4);
+        const SceneGeometry moved = scene_of(mesh, to_world, HitPrecision::in_float);
+        const SceneGeometry instanced({mesh},
+                                      {{.shape = 0, .to_world = to_world}, {.shape = 0, .to_world = at({0, 0, -1e9})}},
+                                      HitPrecision::in_float);
+        for (int i = 0; i < 60000; ++i) {
+            const SceneGeometry& scene = i % 2 == 0 ? moved : instanced;
+            const Vec3d origin = map_point(to_world, 300.0 * random_direction(random));
+            const Vec3d target = map_point(to_world, uniform(random, 0.0, 95.0) * random_direction(random));
+            const auto hit = intersect(scene, origin, normalized(target - origin), 0.0, kInfinity);
+            ASSERT_TRUE(hit);
+            const Vec3d n = hit->geometric_normal;
+            const Vec3d any = random_direction(random);
+            const Vec3d level = normalized(any - dot(any, n) * n);
+            const Vec3d out = normalized(level + std::exp(uniform(random, std::log(1e-2), 3.0)) * n);
+            const double distance = std::exp(uniform(random, std::log(800.0), std::log(1e8)));
+            EXPECT_FALSE(is_occluded(scene, ray_origin(*hit, out), hit->point + distance * out)) << distance;
+            EXPECT_TRUE(is_occluded(scene, ray_origin(*hit, -1.0 * n), hit->point - distance * n)) << distance;
+            if (i % 2 != 0) {                                // moved, flat triangles are needles
+                EXPECT_LT(hit->error_mm, 0x1p-16 * 1300.0);  // of its reach, times 2 for corners and shear
+            }
+        }
     }
 }
 
