@@ -213,13 +213,14 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
         job.renders =
             said_of_scene(options, [&] { return scene->render(passes, options.common.seed, options.has_features); });
     }
-    job.identity = {{"scene", scene_hash(setup, options.scene)},
-                    {"lens", scene->camera_hash()},
-                    {"settings", fmt::format("{} filter, {} features{}", filter.name(),
-                                             options.has_features ? "with" : "no", scene->integrator().description) +
-                                     (passes.empty() ? "" : fmt::format(", passes {}", fmt::join(passes, " and "))) +
-                                     (plan ? fmt::format(", at most {} scatterings", setup.max_bounces) : "") +
-                                     (wishes.precision.empty() ? "" : ", hits in " + wishes.precision)}};
+    job.identity = {
+        {"scene", scene_hash(setup, options.scene)},
+        {"lens", scene->camera_hash()},
+        {"settings", fmt::format("{} filter, {} features{}", filter.name(), options.has_features ? "with" : "no",
+                                 scene->integrator().description) +
+                         (passes.empty() ? "" : fmt::format(", passes {}", fmt::join(passes, " and "))) +
+                         (plan ? fmt::format(", at most {} scatterings", setup.max_bounces) : "") +
+                         (setup.scene.precision == scene::HitPrecision::in_float ? ", hits in float" : "")}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->camera().colours();
     if (is_metered) {

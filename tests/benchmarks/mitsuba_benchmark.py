@@ -3,9 +3,10 @@
 LENSPROOF is the built program, SCENES the folder of cornell_box.toml and checker_wall.toml, FOLDER keeps what pip
 fetched: Mitsuba 3. The Cornell box through a pinhole, by itself and with a bumpy ball of 358,800 triangles in it, by
 lensproof also with hits in float; and the checkered wall through a thin lens and, by lensproof alone, through the exact
-one: the same geometry, spectra and path lengths, four wavelengths a path, one thread each, in turns. The thin lenses have the exact one's focal length, so that all look at the same. What a sample costs is the
-difference of a long run and a short one, so that starting, reading and writing count for neither; of Mitsuba's its first
-run, which compiles, counts for nothing. Medians of five.
+one: the same geometry, spectra and path lengths, four wavelengths a path, one thread each, in turns. The thin lenses
+have the exact one's focal length, so that all look at the same. What a sample costs is the difference of a long run and
+a short one, so that starting, reading and writing count for neither; of Mitsuba's its first run, which compiles, counts
+for nothing. Medians of five.
 
 A sample's noise is what two runs with other seeds differ by; the time to one percent of it is what users wait for.
 Mitsuba's `llvm_ad_spectral` wants a libLLVM, the newest that is found.
@@ -94,8 +95,8 @@ class Lensproof:
 
     def run(self, samples, seed, threads):
         subprocess.run([self.program, "render", str(self.scene), "-o", str(self.picture), "--seed", str(seed), "--spp",
-                        str(samples), "--threads", str(threads), "--quiet", *self.options], check=True, stdin=subprocess.DEVNULL,
-                       capture_output=True)
+                        str(samples), "--threads", str(threads), "--quiet", *self.options], check=True,
+                       stdin=subprocess.DEVNULL, capture_output=True)
 
     def render(self, samples, seed):
         """The picture, and the seconds of CPU."""

@@ -131,6 +131,16 @@ TEST(RenderScene, TakesAnotherPrecisionThanTheScenes) {
     const auto differ = [&](const char* a, const char* b, const char* limit) {
         return place.run({"compare", a, b, "--rms-limit", limit}).status;
     };
+    const auto render_shard = [&](const char* shard, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"render", "scene.toml", "--shard",
+                                              shard,    "-o",         std::string(1, shard[0]) + ".exr"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return place.run(arguments).status;
+    };
+    ASSERT_EQ(render_shard("1/2", {}) + render_shard("2/2", {"--precision", "double"}), 0);
+    EXPECT_EQ(place.run({"merge", "1.exr", "2.exr", "-o", "merged.exr"}).status, 0);
+    ASSERT_EQ(render_shard("2/2", {"--precision", "float"}), 0);
+    EXPECT_EQ(place.run({"merge", "1.exr", "2.exr", "-o", "mixed.exr"}).status, 2);
     EXPECT_EQ(differ("float.exr", "own.exr", "1e-9"), 0);
     EXPECT_EQ(differ("double.exr", "again.exr", "1e-9"), 0);
     EXPECT_EQ(differ("double.exr", "float.exr", "1e-9"), 1);

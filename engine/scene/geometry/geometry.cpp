@@ -105,7 +105,10 @@ std::optional<Meeting<double>> judged(const Query& query, const RTCHit& hit) {
 /// Whether the true ray meets it; then it counts if it is nearer.
 bool take(Query& query, const RTCHit& hit) {
     const auto meeting = judged(query, hit);
-    return meeting && (query.nearest.offer(*meeting, object_of(hit), hit.primID), true);
+    if (meeting) {
+        query.nearest.offer(*meeting, object_of(hit), hit.primID);
+    }
+    return meeting.has_value();
 }
 
 /// Goes on from what is met already with what Embree knows of.
