@@ -62,7 +62,7 @@ ExactCamera::Paths::TracedInEither ExactCamera::Paths::traced(const ExactCamera&
                                                               const spectral::SpectralGrid& grid, PathCarry carry) {
     const auto in = [&]<class T>(const optics::SpectralLens<T>& lens) -> TracedInEither {
         BasicLensPaths<T> paths(film, lens, camera.slices_);
-        BasicSharedRays<T> shared(grid, lens, camera.slices_, film.sensor, film.filter.is_box());
+        BasicSharedRays<T> shared(grid, lens, camera.slices_, film.sensor, film.filter.is_box(), carry);
         if (camera.on_device_ && film.filter.is_box()) {
             return Traced<DevicePaths, T>{
                 .paths = {*camera.device_, std::get<DeviceCamera<T>>(*camera.on_device_), film, camera.pupil_.plane_z(),
@@ -148,7 +148,8 @@ void ExactCamera::trace_importances(const optics::SpectralLens<T>& lens, const S
                 traced.wavelength[i] = paths[first + i].index[m];
             }
             optics::trace_batch<optics::Direction::forward>(lens, traced, {.carry = optics::Carry::transmittance});
-            meet_film(lens, slices_, path_kernels({}), traced, meetings);
+            meet_film(lens.at(0).image_z, pupil_.plane_z(), path_kernels({}), traced, meetings);
+            find_pupil_pdfs(slices_, std::span(traced.wavelength).first(count), path_kernels({}), meetings);
             for (std::size_t i = 0; i < count; ++i) {
                 FilmImportance& of = found[first + i];
                 const bool arrives = meetings.transmittance[i] >= 0.0;

@@ -9,38 +9,41 @@
 namespace lensproof::render {
 
 template <class T>
-void meet_film(const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil, const PathKernels& kernels,
-               const optics::RayBatch<T>& behind, FilmMeetings& meetings) {
-    const double film_z = lens.at(0).image_z;
-    const double pupil_z = pupil.map().plane_z();
+void meet_film(double film_z, double pupil_z, const PathKernels& kernels, const optics::RayBatch<T>& behind,
+               FilmMeetings& meetings) {
     if constexpr (std::is_same_v<T, double>) {
         kernels.cross_film(film_z, pupil_z, behind, meetings);
     } else {
         kernels.cross_film_in_float(film_z, pupil_z, behind, meetings);
     }
-    const pupil::PupilSliceTables* tables = pupil.tables();
-    if (tables != nullptr) {
-        kernels.weigh_pupil_points(*tables, behind.wavelength.data(), behind.size, meetings);
-    }
     for (std::size_t i = 0; i < static_cast<std::size_t>(behind.size); ++i) {
         const bool arrives = behind.status[i] == optics::RayStatus::ok;
         meetings.transmittance[i] = arrives ? static_cast<double>(behind.transmittance[i]) : -1.0;
-        if (tables == nullptr) {
-            meetings.pupil_pdf[i] = arrives ? pupil.pdf({meetings.film_x[i], meetings.film_y[i]}, behind.wavelength[i],
-                                                        {meetings.pupil_x[i], meetings.pupil_y[i]})
-                                            : 0.0;
-        }
     }
 }
 
-template void meet_film(const optics::SpectralLens<float>& lens, const pupil::PupilSlices& pupil,
-                        const PathKernels& kernels, const optics::RayBatch<float>& behind, FilmMeetings& meetings);
-template void meet_film(const optics::SpectralLens<double>& lens, const pupil::PupilSlices& pupil,
-                        const PathKernels& kernels, const optics::RayBatch<double>& behind, FilmMeetings& meetings);
+template void meet_film(double film_z, double pupil_z, const PathKernels& kernels,
+                        const optics::RayBatch<float>& behind, FilmMeetings& meetings);
+template void meet_film(double film_z, double pupil_z, const PathKernels& kernels,
+                        const optics::RayBatch<double>& behind, FilmMeetings& meetings);
+
+void find_pupil_pdfs(const pupil::PupilSlices& pupil, std::span<const std::uint16_t> wavelengths,
+                     const PathKernels& kernels, FilmMeetings& meetings) {
+    if (const pupil::PupilSliceTables* tables = pupil.tables()) {
+        kernels.weigh_pupil_points(*tables, wavelengths.data(), static_cast<int>(wavelengths.size()), meetings);
+        return;
+    }
+    for (std::size_t i = 0; i < wavelengths.size(); ++i) {
+        meetings.pupil_pdf[i] = meetings.transmittance[i] >= 0.0
+                                    ? pupil.pdf({meetings.film_x[i], meetings.film_y[i]}, wavelengths[i],
+                                                {meetings.pupil_x[i], meetings.pupil_y[i]})
+                                    : 0.0;
+    }
+}
 
 template <class T>
 BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
-                                    const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box,
+                                    const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box, PathCarry carry,
                                     std::optional<SimdLevel> level)
     : grid_(grid),
       lens_(&lens),
@@ -50,12 +53,14 @@ BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const op
       kernels_(&path_kernels(level)),
       tracing_{.carry = optics::Carry::transmittance, .level = level},
       turned_(kSharedChunk),
-      rays_(kSharedChunk) {}
+      rays_(kSharedChunk) {
+    chunk_.has_pdfs = carry == PathCarry::wavelengths_and_pdfs;
+}
 
 template <class T>
 void BasicSharedRays<T>::weigh(CameraPathBuffer& paths) {
     paths.weights.resize(static_cast<std::size_t>(paths.size));
-    paths.pdf.resize(paths.weights.size());
+    paths.pdf.resize(chunk_.has_pdfs ? paths.weights.size() : 0);
     for (int first = 0; first < paths.size; first += kSharedChunk) {
         chunk_.size = std::min(kSharedChunk, paths.size - first);
         const auto at = static_cast<std::size_t>(first);
@@ -120,7 +125,12 @@ void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first)
             rays_.wavelength[i] = grid_.path(paths.wavelength[first + i]).index[m];
         }
         optics::trace_batch<optics::Direction::forward>(*lens_, rays_, tracing_);
-        meet_film(*lens_, *pupil_, *kernels_, rays_, chunk_.others[m - 1]);
+        FilmMeetings& meetings = chunk_.others[m - 1];
+        meet_film(lens_->at(0).image_z, pupil_->map().plane_z(), *kernels_, rays_, meetings);
+        if (chunk_.has_pdfs) {
+            find_pupil_pdfs(*pupil_, std::span(rays_.wavelength).first(static_cast<std::size_t>(rays_.size)), *kernels_,
+                            meetings);
+        }
     }
 }
 
@@ -130,7 +140,9 @@ void BasicSharedRays<T>::give_weights(CameraPathBuffer& paths, std::size_t first
         for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
             paths.weights[first + i][m] = chunk_.weight[m][i];
         }
-        paths.pdf[first + i] = {.shared = chunk_.shared_pdf[i], .hero = chunk_.hero_pdf[i]};
+        if (chunk_.has_pdfs) {
+            paths.pdf[first + i] = {.shared = chunk_.shared_pdf[i], .hero = chunk_.hero_pdf[i]};
+        }
     }
 }
 

@@ -152,12 +152,16 @@ template <class Abi>
     }
 }
 
-/// Those of one wavelength, from the i-th path on.
+/// Those of the m-th of the others, from the i-th path on, beside heroes of `hero_pdf`.
 template <class Numbers>
-FilmArrival<Numbers> arrivals(const Sensor& sensor, const FilmMeetings& meetings, int i) {
+FilmArrival<Numbers> arrivals(const Sensor& sensor, const SharedPaths& paths, std::size_t m, int i,
+                              const Numbers& hero_pdf) {
+    const FilmMeetings& meetings = paths.others[m];
     const Numbers transmittance = Numbers::load(meetings.transmittance.data() + i);
     const auto arrives = transmittance >= Numbers(0.0);
-    const Numbers pdf = Numbers::load(meetings.pupil_pdf.data() + i) * Numbers::load(meetings.per_etendue.data() + i);
+    const Numbers pdf =
+        paths.has_pdfs ? Numbers::load(meetings.pupil_pdf.data() + i) * Numbers::load(meetings.per_etendue.data() + i)
+                       : hero_pdf;
     return {.at_px = sensor.pixel<Numbers>(
                 {Numbers::load(meetings.film_x.data() + i), Numbers::load(meetings.film_y.data() + i)}),
             .transmittance = select(arrives, transmittance, Numbers(0.0)),
@@ -172,8 +176,8 @@ template <class Abi>
         const FilmArrival<Numbers> hero{
             .at_px = {}, .transmittance = Numbers::load(paths.hero_weight.data() + i) * hero_pdf, .pdf = hero_pdf};
         const auto shared = shared_weights<Numbers, spectral::kWavelengthsPerPath>(
-            {hero, arrivals<Numbers>(sensor, paths.others[0], i), arrivals<Numbers>(sensor, paths.others[1], i),
-             arrivals<Numbers>(sensor, paths.others[2], i)},
+            {hero, arrivals(sensor, paths, 0, i, hero_pdf), arrivals(sensor, paths, 1, i, hero_pdf),
+             arrivals(sensor, paths, 2, i, hero_pdf)},
             {Numbers::load(paths.centre_x.data() + i), Numbers::load(paths.centre_y.data() + i)});
         for (std::size_t m = 0; m < shared.weight.size(); ++m) {
             shared.weight[m].store(paths.weight[m].data() + i);

@@ -21,7 +21,7 @@ struct alignas(optics::kPacketAlignment) FilmMeetings {
     SharedColumn<double> pupil_x;
     SharedColumn<double> pupil_y;
     SharedColumn<double> per_etendue;    // as FilmCrossing has it
-    SharedColumn<double> pupil_pdf;      // of that pupil point for that film point, 1/mm²
+    SharedColumn<double> pupil_pdf;      // of that pupil point for that film point, 1/mm², where it was asked for
     SharedColumn<double> transmittance;  // below 0: the ray does not get there
 };
 
@@ -36,6 +36,7 @@ struct alignas(optics::kPacketAlignment) SharedPaths {
     SharedColumn<double> shared_pdf;
     SharedColumn<double> hero_pdf;
     int size = 0;
+    bool has_pdfs = false;  // of the others; else each that arrives has its hero's
 };
 
 }  // namespace lensproof::render
