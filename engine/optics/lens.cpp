@@ -392,7 +392,7 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
     if (std::ranges::all_of(traced.attenuation, [](double per_mm) { return per_mm == 0.0; })) {
         traced.attenuation.clear();
     }
-    note_near_gaps(traced.surfaces);
+    note_near_gaps(traced.surfaces, traced.specials);
     return traced;
 }
 

@@ -64,6 +64,12 @@ struct SpecialSurface {
         return v.x * axis<V>(0) + (v.y * axis<V>(1) + v.z * axis<V>(2));
     }
 
+    /// A centred sphere with a round aperture, but for its coating.
+    [[nodiscard]] constexpr bool is_sphere() const {
+        return !has_shape && vertex == Vec2<T>{} && axes == SpecialSurface{}.axes && mask.is_full_circle() &&
+               thin.kind == ThinKind::none;
+    }
+
   private:
     template <class V>
     [[nodiscard]] constexpr Vec3<V> axis(std::size_t i) const {
@@ -106,10 +112,13 @@ constexpr TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_dia
 /// is met by `intersect_from_near`, which is quicker. (With 2, fisheye-220's ninth surface alone makes a float's error
 /// at the front 1.6 times as large, and more than it may be.) A lens without these notes is traced too.
 template <class T>
-void note_near_gaps(std::vector<TraceSurface<T>>& surfaces) {
+void note_near_gaps(std::vector<TraceSurface<T>>& surfaces, const std::vector<SpecialSurface<T>>& specials) {
     using std::abs;
     using std::sqrt;
     const auto is_near = [](const TraceSurface<T>& to, T reach) { return abs(to.curvature) * reach <= T(1.75); };
+    const auto is_sphere = [&](const TraceSurface<T>& surface) {
+        return surface.special < 0 || specials[static_cast<std::size_t>(surface.special)].is_sphere();
+    };
     for (std::size_t i = 1; i < surfaces.size(); ++i) {
         TraceSurface<T>& a = surfaces[i - 1];
         TraceSurface<T>& b = surfaces[i];
@@ -118,7 +127,7 @@ void note_near_gaps(std::vector<TraceSurface<T>>& surfaces) {
         const auto reach_from = [&](const TraceSurface<T>& from) {
             return abs(b.vertex_z - a.vertex_z) + T(2) * sqrt(from.semi_diameter_squared);
         };
-        if (a.special < 0 && b.special < 0) {
+        if (is_sphere(a) && is_sphere(b)) {
             b.from_far_forward = !is_near(b, reach_from(a));
             a.from_far_reverse = !is_near(a, reach_from(b));
         }

@@ -70,9 +70,11 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
     }
     for (std::size_t i = 0; i < surfaces; ++i) {
         const std::span<const SurfaceIndices<T>> of_surface(table_.data() + i * count, count);
-        indices_.push_back({.at = of_surface.data(), .bends = std::ranges::any_of(of_surface, [](const auto& one) {
-                                                         return one.before != one.after;
-                                                     })});
+        const int special = at_.front().surfaces[i].special;
+        indices_.push_back(
+            {.at = of_surface.data(),
+             .bends = std::ranges::any_of(of_surface, [](const auto& one) { return one.before != one.after; }),
+             .is_coated_sphere = special >= 0 && at_.front().specials[static_cast<std::size_t>(special)].is_sphere()});
     }
     add_attenuation();
     add_coatings();

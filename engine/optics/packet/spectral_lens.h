@@ -32,6 +32,7 @@ class SpectralLens {
     struct Indices {
         const SurfaceIndices<T>* at = nullptr;
         bool bends = true;                      // at some of the wavelengths: its media differ
+        bool is_coated_sphere = false;          // centred, of a round aperture, and coated
         const T* attenuation_before = nullptr;  // null: clear at all of them
         const T* attenuation_after = nullptr;
         /// Of its coating's layers from the scene's side, where none absorbs: of each the index, then the thickness.

@@ -186,7 +186,7 @@ class BlockTracer {
                         .from_last_vertex = surface.vertex_z - last_vertex_z_,
                         .limit = limit > Scalar(0) ? limit : Scalar(-1)};
         const bool from_far = !clip_ || (kForward ? surface.from_far_forward : surface.from_far_reverse);
-        if (surface.special >= 0) {
+        if (surface.special >= 0 && !lens_.indices[index].is_coated_sphere) {
             lens_.is_monochromatic() ? pass_special<false>(here) : pass_special<true>(here);
         } else if (lens_.is_monochromatic()) {
             from_far ? pass_packets<true, false>(here) : pass_packets<false, false>(here);
@@ -196,27 +196,46 @@ class BlockTracer {
         last_vertex_z_ = surface.vertex_z;
     }
 
+    /// What a sphere does to light that goes on.
+    enum class Sphere {
+        open,    // nothing: its media are of one index
+        bare,    // bends it, and takes what Fresnel's equations say
+        coated,  // or its coating
+    };
+
     template <bool from_far, bool per_lane>
     void pass_packets(const Here& here) {
-        lens_.indices[here.index].bends ? pass_packets<from_far, per_lane, true>(here)
-                                        : pass_packets<from_far, per_lane, false>(here);
+        const auto& of = lens_.indices[here.index];
+        if (carry != Carry::geometry && of.is_coated_sphere) {
+            pass_coated<from_far, per_lane>(here);
+        } else if (of.bends) {
+            pass_packets<from_far, per_lane, Sphere::bare>(here);
+        } else {
+            pass_packets<from_far, per_lane, Sphere::open>(here);
+        }
     }
 
-    template <bool from_far, bool per_lane, bool bends>
+    /// Kept apart, so that bare lenses keep their registers.
+    template <bool from_far, bool per_lane>
+    [[gnu::noinline, gnu::flatten]] void pass_coated(const Here& here) {
+        pass_packets<from_far, per_lane, Sphere::coated>(here);
+    }
+
+    template <bool from_far, bool per_lane, Sphere sphere>
     void pass_packets(const Here& here) {
         [[maybe_unused]] const Media the_same = media<false>(here.index, 0);
         for (int packet = 0; packet < packets_; ++packet) {
             if constexpr (per_lane) {
-                pass_packet<from_far, true, bends>(here, packet, media<true>(here.index, packet));
+                pass_packet<from_far, true, sphere>(here, packet, media<true>(here.index, packet));
             } else {
-                pass_packet<from_far, false, bends>(here, packet, the_same);
+                pass_packet<from_far, false, sphere>(here, packet, the_same);
             }
         }
     }
 
     /// Between media of one index, as of a stop, nothing bends, and all that is inside passes: to the bit what
     /// refracting does, since the root of a rounded square is what was squared.
-    template <bool from_far, bool per_lane, bool bends>
+    template <bool from_far, bool per_lane, Sphere sphere>
     void pass_packet(const Here& here, int packet, const Media& media) {
         const Mask going = this->going(packet);
         if (!any(going)) {
@@ -226,12 +245,13 @@ class BlockTracer {
         const Vec3<Numbers> near = moved_near<from_far>(here, before);
         const Intersection<Numbers> met = intersect_from_near(near, before.direction, curvature(here), heading());
         const Refraction<Numbers> bent =
-            bends ? bent_at(here, before, met, media)
-                  : Refraction<Numbers>{
-                        .direction = before.direction, .cos_refraction = met.cos_incidence, .transmitted = Mask(true)};
+            sphere != Sphere::open
+                ? bent_at(here, before, met, media)
+                : Refraction<Numbers>{
+                      .direction = before.direction, .cos_refraction = met.cos_incidence, .transmitted = Mask(true)};
         const Mask passes = met.hit && is_inside(here, met) && bent.transmitted;
         if (!all(passes || !going)) {
-            pass_with_ends<from_far, per_lane>(here, packet);
+            pass_with_ends<from_far, per_lane, sphere>(here, packet);
             return;
         }
         const Vec3<Numbers>& at_surface = met.point;
@@ -242,9 +262,7 @@ class BlockTracer {
         }
         add_path(packet, media, distance_moved<from_far>(here, before) + met.distance, going);
         add_depth<per_lane>(here, packet, distance_moved<from_far>(here, before) + met.distance, going);
-        if constexpr (bends) {
-            add_loss(packet, fresnel(media, met, bent), going);
-        }
+        add_loss_of<per_lane, sphere>(here, packet, media, met, bent, going);
     }
 
     static Numbers heading() { return Numbers(kForward ? Scalar(1) : Scalar(-1)); }
@@ -325,8 +343,19 @@ class BlockTracer {
         select(lanes, so_far * by, so_far).store(numbers);
     }
 
-    /// The same for a packet of which some rays end here or pass a rim: kept apart, since it is rare.
-    template <bool from_far, bool per_lane>
+    /// A sphere's loss.
+    template <bool per_lane, Sphere sphere>
+    void add_loss_of(const Here& here, int packet, const Media& media, const Intersection<Numbers>& met,
+                     const Refraction<Numbers>& bent, const Mask& lanes) {
+        if constexpr (sphere == Sphere::coated) {
+            add_loss(packet, coated_transmittances<per_lane>(here, packet, media, met.cos_incidence, lanes), lanes);
+        } else if constexpr (sphere == Sphere::bare) {
+            add_loss(packet, fresnel(media, met, bent), lanes);
+        }
+    }
+
+    /// What `pass_packet` does, for a packet of which some rays end here or pass a rim: kept apart, since it is rare.
+    template <bool from_far, bool per_lane, Sphere sphere>
     [[gnu::noinline, gnu::flatten]] void pass_with_ends(const Here& here, int packet) {
         const State before = load(packet);
         const Media media = this->template media<per_lane>(here.index, packet);
@@ -337,7 +366,7 @@ class BlockTracer {
             settle(here, packet, before, {met.point, bent.direction}, met.hit, !is_inside(here, met), bent.transmitted);
         add_path(packet, media, distance_moved<from_far>(here, before) + met.distance, fate.met);
         add_depth<per_lane>(here, packet, distance_moved<from_far>(here, before) + met.distance, fate.met);
-        add_loss(packet, fresnel(media, met, bent), fate.on);
+        add_loss_of<per_lane, sphere>(here, packet, media, met, bent, fate.on);
     }
 
     /// A surface with a shape, a frame, a coating or an opening of its own.

@@ -36,7 +36,7 @@ void find_pupil_pdfs(const pupil::PupilSlices& pupil, std::span<const std::uint1
 /// Where nobody asks for pdfs, those of the others are not looked up: the techniques whose ray arrives in the pixel get
 /// equal parts, as if each p_m were the hero's p. Any parts whose sum is one for every ray leave the mean as it is, and
 /// where the ray arrives the pdfs differ as the areas of the pupil do, by little: the variance of pictures stays within
-/// half a percent, and a tenth of a path's time is saved.
+/// a percent, and a tenth of a path's time is saved.
 ///
 /// The hero's own p and τ are those that its path was made with; the other wavelengths' rays are traced.
 ///
