@@ -35,6 +35,7 @@ struct TraceCoating {
     bool is_mirror = false;  // of the stated reflectance, or of 1
 
     [[nodiscard]] constexpr bool is_bare() const { return layers.empty() && !reflectance && !is_mirror; }
+    [[nodiscard]] constexpr bool is_stated() const { return is_mirror || reflectance.has_value(); }
 };
 
 /// A coated surface's reflectance and transmittance of power; the layers keep the rest.
@@ -113,10 +114,13 @@ struct StackFields {
     [[nodiscard]] constexpr Complex<T> outgoing() const { return eta_near * first - second; }
     [[nodiscard]] constexpr Complex<T> reflected() const { return outgoing() / incoming(); }
     [[nodiscard]] constexpr Complex<T> transmitted() const { return Complex<T>{T(2) * eta_near * scale} / incoming(); }
+    /// Those of power, of which the incoming wave has |incoming|².
+    [[nodiscard]] constexpr T incoming_power() const { return norm(incoming()); }
+    [[nodiscard]] constexpr T outgoing_power() const { return norm(outgoing()); }
+    [[nodiscard]] constexpr T transmitted_power() const { return T(4) * eta_near * eta_far.real * scale * scale; }
     [[nodiscard]] constexpr CoatedPowers<T> powers() const {
-        const T incoming_power = norm(incoming());
-        return {.reflected = norm(outgoing()) / incoming_power,
-                .transmitted = T(4) * eta_near * eta_far.real * scale / incoming_power * scale};
+        return {.reflected = outgoing_power() / incoming_power(),
+                .transmitted = transmitted_power() / incoming_power()};
     }
 };
 
@@ -124,15 +128,36 @@ template <class T>
 struct PolarisedFields {
     StackFields<T> s;
     StackFields<T> p;
+
+    /// Of unpolarised light: the mean of both powers, with one division.
+    [[nodiscard]] constexpr T reflectance() const { return mean(s.outgoing_power(), p.outgoing_power()); }
+    [[nodiscard]] constexpr T transmittance() const { return mean(s.transmitted_power(), p.transmitted_power()); }
+
+  private:
+    [[nodiscard]] constexpr T mean(const T& of_s, const T& of_p) const {
+        const T in_s = s.incoming_power();
+        const T in_p = p.incoming_power();
+        return (of_s * in_p + of_p * in_s) / (T(2) * (in_s * in_p));
+    }
 };
 
-/// Behind all layers, between media of index `near` and `far` and longitudinal wavenumbers `q_near` and `q_far`.
+/// The media on both sides of a coating as light comes to it, and 1 over the squares of their indices.
 template <class T>
-constexpr PolarisedFields<T> fields_behind(const T& near, const T& far, const T& q_near, const Complex<T>& q_far) {
+struct CoatedMedia {
+    T near;
+    T far;
+    T per_squared_near;
+    T per_squared_far;
+};
+
+/// Behind all layers; longitudinal wavenumbers in the two media.
+template <class T>
+constexpr PolarisedFields<T> fields_behind(const CoatedMedia<T>& media, const T& q_near, const Complex<T>& q_far) {
     PolarisedFields<T> fields{
         .s = {.first = {T(1)}, .second = q_far, .scale = T(1), .eta_near = q_near, .eta_far = q_far},
-        .p = {.first = {T(1)}, .second = {}, .scale = T(1), .eta_near = q_near / (near * near), .eta_far = {}}};
-    fields.p.eta_far = q_far / (far * far);
+        .p = {
+            .first = {T(1)}, .second = {}, .scale = T(1), .eta_near = q_near * media.per_squared_near, .eta_far = {}}};
+    fields.p.eta_far = media.per_squared_far * q_far;
     fields.p.second = fields.p.eta_far;
     return fields;
 }
@@ -144,7 +169,7 @@ constexpr PolarisedFields<T> fields_behind(const T& near, const T& far, const T&
 /// side on (Abelès 1950; Macleod, Thin-Film Optical Filters, 4th ed., §2.4, with κ and i of the other sign).
 template <class T, class Number>
 constexpr void cross_layer(PolarisedFields<T>& fields, const Number& cosine, const Number& sine_by_q,
-                           const Number& q_squared, const Number& n_squared) {
+                           const Number& q_squared, const Number& n_squared, const Number& per_n_squared) {
     const auto cross = [&](StackFields<T>& of, const Number& by_eta, const Number& with_eta) {
         const Complex<T> to_first = by_eta * of.second;
         const Complex<T> to_second = with_eta * of.first;
@@ -153,11 +178,11 @@ constexpr void cross_layer(PolarisedFields<T>& fields, const Number& cosine, con
     };
     const Number sine_times_q = sine_by_q * q_squared;
     cross(fields.s, sine_by_q, sine_times_q);
-    cross(fields.p, sine_by_q * n_squared, sine_times_q / n_squared);
+    cross(fields.p, sine_by_q * n_squared, sine_times_q * per_n_squared);
 }
 
-/// Beyond this magnitude what fields have grown by is kept apart.
-inline constexpr double kLargeFields = 1e10;
+/// Beyond this magnitude what fields have grown by is kept apart: their fourth powers are far from a float's largest.
+inline constexpr double kLargeFields = 1e4;
 
 template <class T>
 constexpr T magnitude(const StackFields<T>& of) {
@@ -182,7 +207,9 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
     const T q_near = near * cos_incidence;
     const T far_squared = (far - near) * (far + near) + q_near * q_near;
     const Complex q_far = far_squared < T(0) ? Complex{T(0), sqrt(-far_squared)} : Complex{sqrt(far_squared)};
-    PolarisedFields<T> fields = fields_behind(near, far, q_near, q_far);
+    PolarisedFields<T> fields = fields_behind<T>(
+        {.near = near, .far = far, .per_squared_near = T(1) / (near * near), .per_squared_far = T(1) / (far * far)},
+        q_near, q_far);
     const T two_pi = T(2) * acos(T(-1));  // in every number type
     const std::size_t count = coating.layers.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -193,9 +220,10 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
         const Complex q_squared{(n - near) * (n + near) - kappa * kappa + q_near * q_near, n_squared.imag};
         const LayerWave<T> wave = layer_wave(q_squared, two_pi * layer.thickness);
         if (q_squared.imag == T(0)) {
-            cross_layer(fields, wave.cosine.real, wave.sine_by_q.real, q_squared.real, n_squared.real);
+            cross_layer(fields, wave.cosine.real, wave.sine_by_q.real, q_squared.real, n_squared.real,
+                        T(1) / n_squared.real);
         } else {
-            cross_layer(fields, wave.cosine, wave.sine_by_q, q_squared, n_squared);
+            cross_layer(fields, wave.cosine, wave.sine_by_q, q_squared, n_squared, Complex{T(1)} / n_squared);
         }
         for (StackFields<T>* of : {&fields.s, &fields.p}) {
             of->scale = of->scale * wave.decay;
@@ -210,49 +238,77 @@ constexpr PolarisedFields<T> stack_fields(const TraceCoating<T, Layers>& coating
     return fields;
 }
 
-/// The same powers as `coating_powers` has, to the bit, of a packet's lanes in which no wave fades and none is
-/// reflected totally: `holds` in these, in the others nothing is said.
+/// A layer that absorbs nothing, at one wavelength.
+template <class T>
+struct alignas(4 * sizeof(T)) ClearLayer {
+    T index;
+    T phase_by_q;  // 2π · its thickness in vacuum wavelengths
+    T squared;     // index², and 1 over it
+    T per_squared;
+};
+
+template <class T>
+ClearLayer<T> clear_layer(const TraceLayer<T>& layer) {
+    const T squared = layer.index * layer.index;
+    return {.index = layer.index,
+            .phase_by_q = T(2) * std::acos(T(-1)) * layer.thickness,
+            .squared = squared,
+            .per_squared = T(1) / squared};
+}
+
+/// The same fields as `stack_fields` has, to the bit, of a packet's lanes in which no wave fades and none is reflected
+/// totally: `holds` in these, in the others nothing is said.
 template <Packet T>
-struct ClearPowers {
-    PolarisedPowers<T> powers;
+struct ClearFields {
+    PolarisedFields<T> fields;
     MaskOf<T> holds;
 };
 
-/// Of layers that absorb nothing: `layer_at(i)` is the i-th from the far side.
+/// Of layers that absorb nothing: `layer_at(i)` is the i-th from the far side, a ClearLayer.
 template <Packet T, class LayerAt>
-constexpr ClearPowers<T> clear_coating_powers(int count, const LayerAt& layer_at, const T& n_near, const T& n_far,
+constexpr ClearFields<T> clear_coating_fields(int count, const LayerAt& layer_at, const CoatedMedia<T>& media,
                                               const T& cos_incidence) {
     using Number = typename LaneOf<T>::Number;
     const T zero(Number(0));
-    const T near = abs(n_near);
-    const T far = abs(n_far);
+    const T near = abs(media.near);
+    const T far = abs(media.far);
     const T q_near = near * cos_incidence;
     const T far_squared = (far - near) * (far + near) + q_near * q_near;
     MaskOf<T> holds = far_squared >= zero;
-    PolarisedFields<T> fields = fields_behind(near, far, q_near, Complex<T>{sqrt(far_squared), zero});
-    const T two_pi(Number(2) * std::acos(Number(-1)));
+    PolarisedFields<T> fields = fields_behind(media, q_near, Complex<T>{sqrt(far_squared), zero});
     for (int i = 0; i < count; ++i) {
-        const TraceLayer<T> layer = layer_at(i);
+        const ClearLayer<T> layer = layer_at(i);
         const T& n = layer.index;
         const T q_squared = (n - near) * (n + near) + q_near * q_near;
         const T q = sqrt(q_squared);
-        const T phase = two_pi * layer.thickness * q;
+        const T phase = layer.phase_by_q * q;
         holds = holds && q_squared > zero && phase > zero && phase <= T(kMostTurned<Number>);
         const auto [cosine, sine] = cos_sin_within(phase);
-        cross_layer(fields, cosine, sine / q, q_squared, n * n);
+        cross_layer(fields, cosine, sine / q, q_squared, layer.squared, layer.per_squared);
         for (const StackFields<T>* of : {&fields.s, &fields.p}) {
             holds = holds && magnitude(*of) <= T(Number(kLargeFields));
         }
     }
-    return {.powers = {fields.s.powers(), fields.p.powers()}, .holds = holds};
+    return {.fields = fields, .holds = holds};
 }
 
 /// Whether light from that side gets through at all, or is reflected totally by the medium behind the coating.
 template <class T>
-constexpr bool is_beyond_critical(const T& n1, const T& n2, const T& cos_incidence, bool from_scene_side) {
+constexpr auto is_beyond_critical(const T& n1, const T& n2, const T& cos_incidence, bool from_scene_side) {
     const T& near = from_scene_side ? n1 : n2;
     const T& far = from_scene_side ? n2 : n1;
     return (far - near) * (far + near) + near * near * cos_incidence * cos_incidence <= T(0);
+}
+
+/// Of a coating without layers.
+template <class T, class Layers = TraceLayers<T>>
+constexpr CoatedPowers<T> stated_powers(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
+                                        const T& cos_incidence, bool from_scene_side) {
+    if (coating.is_mirror) {
+        return {.reflected = T(0), .transmitted = coating.reflectance.value_or(T(1))};
+    }
+    const T stated = is_beyond_critical(n1, n2, cos_incidence, from_scene_side) ? T(1) : *coating.reflectance;
+    return {.reflected = stated, .transmitted = T(1) - stated};
 }
 
 /// Reflectance and transmittance for light that meets a surface between `n1` on the scene's side and `n2` on the
@@ -261,13 +317,8 @@ constexpr bool is_beyond_critical(const T& n1, const T& n2, const T& cos_inciden
 template <class T, class Layers = TraceLayers<T>>
 constexpr PolarisedPowers<T> coating_powers(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
                                             const T& cos_incidence, bool from_scene_side) {
-    if (coating.is_mirror) {
-        const CoatedPowers<T> powers{.reflected = T(0), .transmitted = coating.reflectance.value_or(T(1))};
-        return {powers, powers};
-    }
-    if (coating.reflectance) {
-        const T stated = is_beyond_critical(n1, n2, cos_incidence, from_scene_side) ? T(1) : *coating.reflectance;
-        const CoatedPowers<T> powers{.reflected = stated, .transmitted = T(1) - stated};
+    if (coating.is_stated()) {
+        const CoatedPowers<T> powers = stated_powers(coating, n1, n2, cos_incidence, from_scene_side);
         return {powers, powers};
     }
     const PolarisedFields<T> fields = stack_fields(coating, n1, n2, cos_incidence, from_scene_side);
@@ -278,13 +329,15 @@ constexpr PolarisedPowers<T> coating_powers(const TraceCoating<T, Layers>& coati
 template <class T, class Layers = TraceLayers<T>>
 constexpr T coating_transmittance(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
                                   const T& cos_incidence, bool from_scene_side) {
-    return coating_powers(coating, n1, n2, cos_incidence, from_scene_side).unpolarised().transmitted;
+    return coating.is_stated() ? stated_powers(coating, n1, n2, cos_incidence, from_scene_side).transmitted
+                               : stack_fields(coating, n1, n2, cos_incidence, from_scene_side).transmittance();
 }
 
 template <class T, class Layers = TraceLayers<T>>
 constexpr T coating_reflectance(const TraceCoating<T, Layers>& coating, const T& n1, const T& n2,
                                 const T& cos_incidence, bool from_scene_side) {
-    return coating_powers(coating, n1, n2, cos_incidence, from_scene_side).unpolarised().reflected;
+    return coating.is_stated() ? stated_powers(coating, n1, n2, cos_incidence, from_scene_side).reflected
+                               : stack_fields(coating, n1, n2, cos_incidence, from_scene_side).reflectance();
 }
 
 }  // namespace lensproof::optics

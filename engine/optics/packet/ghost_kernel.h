@@ -7,7 +7,7 @@
 
 #include "engine/base/pack.h"
 #include "engine/optics/intersect.h"
-#include "engine/optics/packet/clear_layers.h"
+#include "engine/optics/packet/coated_lanes.h"
 #include "engine/optics/packet/ghost_kernels.h"
 #include "engine/optics/packet/media.h"
 #include "engine/optics/refract.h"
@@ -75,12 +75,12 @@ class GhostTracer {
     [[nodiscard]] WorstLimit worst(int lane) const { return {others_[lane], ratio_squared_[lane]}; }
 
   private:
-    [[nodiscard]] Numbers by_wavelength(const double* table) const { return Numbers::gather(table, wavelengths_); }
+    [[nodiscard]] ByWavelength<Numbers, true> by_wavelength() const { return {wavelengths_}; }
 
     void cross(int surface, bool is_forward, const Numbers& distance) {
         const auto& of = lens_.indices[surface];
         if (const double* attenuation = is_forward ? of.attenuation_before : of.attenuation_after) {
-            optical_depth_ = optical_depth_ + by_wavelength(attenuation) * distance;
+            optical_depth_ = optical_depth_ + by_wavelength().number(attenuation) * distance;
         }
     }
 
@@ -167,7 +167,8 @@ class GhostTracer {
 
     void run_to_surface(int index, bool is_forward, bool reflects) {
         const TraceSurface<double>& surface = lens_.surfaces[index];
-        const SpecialSurface<double>* special = surface.special < 0 ? nullptr : lens_.specials + surface.special;
+        const bool is_sphere = surface.special < 0 || lens_.indices[index].is_coated_sphere;
+        const SpecialSurface<double>* special = is_sphere ? nullptr : lens_.specials + surface.special;
         Vec3<Numbers> from_vertex{origin_.x, origin_.y, origin_.z - Numbers(surface.vertex_z - last_vertex_z_)};
         Vec3<Numbers> direction = direction_;
         if (special != nullptr) {
@@ -198,7 +199,7 @@ class GhostTracer {
         }
         going_ = going_ && (by_blades ? open < Numbers(1.0) : open > Numbers(0.0));
 
-        const auto media = Media<Numbers>::of(lens_.indices[index].at, is_forward, wavelengths_);
+        const auto media = Media<Numbers>::of(lens_.indices[index].at, is_forward, by_wavelength());
         const Numbers heading(is_forward ? 1.0 : -1.0);
         const Numbers& cos_incidence = met.at.cos_incidence;
         const Refraction<Numbers> bent =
@@ -206,7 +207,7 @@ class GhostTracer {
                 ? refract(direction, met.normal, cos_incidence, met.at.sin2_incidence, media.ratio)
                 : refract_at_sphere(direction, met.at.point, Numbers(surface.curvature), heading, cos_incidence,
                                     met.at.sin2_incidence, media.ratio);
-        const bool is_coated = special != nullptr && !special->coating.is_bare();
+        const bool is_coated = surface.special >= 0 && !lens_.specials[surface.special].coating.is_bare();
         if (reflects) {
             direction = reflect(direction, met.normal, cos_incidence);
             if (by_blades) {
@@ -214,8 +215,7 @@ class GhostTracer {
             } else {
                 const Numbers reflected =
                     is_coated
-                        ? coated(&CoatedPowers<Numbers>::reflected, lane_coated_reflectance, index, is_forward, media,
-                                 met.at)
+                        ? coated(CoatedPower::reflected, lane_coated_reflectance, index, is_forward, media, met.at)
                         : select(bent.transmitted,
                                  fresnel_reflectance(media.before, media.after, cos_incidence, bent.cos_refraction),
                                  Numbers(1.0));
@@ -225,8 +225,8 @@ class GhostTracer {
             going_ = going_ && bent.transmitted;
             direction = bent.direction;
             if (is_coated) {
-                pass(coated(&CoatedPowers<Numbers>::transmitted, lane_coated_transmittance<double>, index, is_forward,
-                            media, met.at));
+                pass(coated(CoatedPower::transmitted, lane_coated_transmittance<double>, index, is_forward, media,
+                            met.at));
             } else {
                 const auto passing = fresnel_transmittance(media.ratio, cos_incidence, bent.cos_refraction);
                 pass(passing.part);
@@ -244,21 +244,13 @@ class GhostTracer {
 
     /// One of a coating's powers, of unpolarised light. `of_lane`: the same of a ray.
     template <class OfLane>
-    [[nodiscard]] Numbers coated(Numbers CoatedPowers<Numbers>::*power, const OfLane& of_lane, int index,
-                                 bool is_forward, const Media<Numbers>& media, const Intersection<Numbers>& met) const {
-        Numbers found(0.0);
-        Mask lanes = going_;
-        if (const auto& of = lens_.indices[index]; of.clear_layer_count > 0) {
-            const auto look_up = [&](const double* table) { return by_wavelength(table); };
-            const ClearPowers<Numbers> clear =
-                clear_coating_powers(of.clear_layer_count, clear_layer_at(lens_, of, is_forward, look_up), media.before,
-                                     media.after, met.cos_incidence);
-            found = select(lanes && clear.holds, clear.powers.unpolarised().*power, found);
-            lanes = lanes && !clear.holds;
-        }
-        return Numbers::by_lane(lanes, found, [&](int lane) {
-            return of_lane(*lens_.lens, wavelengths_[lane], index, is_forward, met.cos_incidence[lane]);
-        });
+    [[nodiscard]] Numbers coated(CoatedPower power, const OfLane& of_lane, int index, bool is_forward,
+                                 const Media<Numbers>& media, const Intersection<Numbers>& met) const {
+        return coated_power(power, lens_.indices[index].coatings, is_forward, media, by_wavelength(), met.cos_incidence,
+                            going_, [&](int lane) {
+                                return of_lane(*lens_.lens, wavelengths_[lane], index, is_forward,
+                                               met.cos_incidence[lane]);
+                            });
     }
 
     Vec3<Numbers> origin_;  // z from the last vertex passed

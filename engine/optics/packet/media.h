@@ -1,7 +1,6 @@
 // engine/optics/packet/media.h — the media at a surface for the lanes of a packet.
 #pragma once
-#include <cstdint>
-
+#include "engine/optics/packet/by_wavelength.h"
 #include "engine/optics/surface_indices.h"
 
 namespace lensproof::optics {
@@ -13,20 +12,13 @@ struct Media {
     Numbers before;
     Numbers after;
 
-    /// `at`: the surface's, by wavelength, of which each lane has its own.
-    template <class Scalar>
-    static Media of(const SurfaceIndices<Scalar>* at, bool is_forward, const std::uint16_t* wavelength) {
-        const auto [before, after, forward_ratio, reverse_ratio] = Numbers::gather_rows(at, wavelength);
+    /// `at`: the surface's, by wavelength.
+    template <class Scalar, bool per_lane>
+    static Media of(const SurfaceIndices<Scalar>* at, bool is_forward, const ByWavelength<Numbers, per_lane>& lanes) {
+        const auto [before, after, forward_ratio, reverse_ratio] = lanes.row(at);
         return {.ratio = is_forward ? forward_ratio : reverse_ratio,
                 .before = is_forward ? before : after,
                 .after = is_forward ? after : before};
-    }
-    /// Of one for all lanes.
-    template <class Scalar>
-    static Media of(const SurfaceIndices<Scalar>& at, bool is_forward) {
-        return {.ratio = Numbers(is_forward ? at.forward_ratio : at.reverse_ratio),
-                .before = Numbers(is_forward ? at.before : at.after),
-                .after = Numbers(is_forward ? at.after : at.before)};
     }
 };
 

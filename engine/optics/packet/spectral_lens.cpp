@@ -1,8 +1,10 @@
 #include "engine/optics/packet/spectral_lens.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 namespace lensproof::optics {
 
@@ -25,21 +27,24 @@ bool differ_in_indices_alone(const TraceLens<T>& a, const TraceLens<T>& b) {
     return true;
 }
 
-/// Of the surface's coating at each wavelength; none where it is not made of layers that all absorb nothing.
 template <class T>
-std::size_t clear_layers_of(const std::vector<TraceLens<T>>& at, std::size_t surface) {
-    const int special = at.front().surfaces[surface].special;
-    if (special < 0) {
-        return 0;
+bool is_coated_sphere(const TraceLens<T>& lens, std::size_t surface) {
+    const int index = lens.surfaces[surface].special;
+    if (index < 0) {
+        return false;
     }
-    const auto coating_of = [&](const TraceLens<T>& lens) -> const auto& {
-        return lens.specials[static_cast<std::size_t>(special)].coating;
-    };
-    const std::size_t count = coating_of(at.front()).layers.size();
-    const bool are_clear = std::ranges::all_of(at, [&](const TraceLens<T>& lens) {
-        const auto& coating = coating_of(lens);
-        return !coating.is_mirror && !coating.reflectance && coating.layers.size() == count &&
-               std::ranges::all_of(coating.layers, [](const TraceLayer<T>& layer) { return layer.extinction == T(0); });
+    const SpecialSurface<T>& special = lens.specials[static_cast<std::size_t>(index)];
+    return special.is_sphere() && !special.coating.is_bare();
+}
+
+/// Of coatings of one surface; none where they are not made of layers that all absorb nothing.
+template <class T>
+std::size_t clear_layers_of(const std::vector<const TraceCoating<T>*>& coatings) {
+    const std::size_t count = coatings.front()->layers.size();
+    const bool are_clear = std::ranges::all_of(coatings, [&](const TraceCoating<T>* coating) {
+        return !coating->is_stated() && coating->layers.size() == count &&
+               std::ranges::all_of(coating->layers,
+                                   [](const TraceLayer<T>& layer) { return layer.extinction == T(0); });
     });
     return are_clear ? count : 0;
 }
@@ -105,25 +110,53 @@ void SpectralLens<T>::add_attenuation() {
 
 template <class T>
 void SpectralLens<T>::add_coatings() {
-    std::vector<std::size_t> begins;
+    std::vector<std::size_t> first_layers;  // of each surface
     for (std::size_t i = 0; i < indices_.size(); ++i) {
-        begins.push_back(clear_layers_.size());
-        const std::size_t count = clear_layers_of(at_, i);
-        indices_[i].clear_layer_count = static_cast<int>(count);
-        for (std::size_t layer = 0; layer < count; ++layer) {
-            const auto add = [&](T TraceLayer<T>::*number) {
-                for (const TraceLens<T>& lens : at_) {
-                    const auto special = static_cast<std::size_t>(lens.surfaces[i].special);
-                    clear_layers_.push_back(lens.specials[special].coating.layers[layer].*number);
-                }
-            };
-            add(&TraceLayer<T>::index);
-            add(&TraceLayer<T>::thickness);
+        first_layers.push_back(clear_layers_.size());
+        if (at_.front().surfaces[i].special >= 0) {
+            add_coatings_of(i);
         }
     }
     for (std::size_t i = 0; i < indices_.size(); ++i) {
-        indices_[i].clear_layers = clear_layers_.data() + begins[i];
+        indices_[i].coatings.clear_layers = clear_layers_.data() + first_layers[i];
     }
+}
+
+template <class T>
+void SpectralLens<T>::add_coatings_of(std::size_t surface) {
+    std::vector<const TraceCoating<T>*> by_wavelength;
+    for (const TraceLens<T>& lens : at_) {
+        by_wavelength.push_back(&lens.specials[static_cast<std::size_t>(lens.surfaces[surface].special)].coating);
+    }
+    const auto column = [&](const auto& of, const auto& number) {
+        std::vector<T>& numbers = of_coated_surfaces_.emplace_back();
+        std::ranges::transform(of, std::back_inserter(numbers), number);
+        return std::as_const(numbers).data();
+    };
+    SurfaceCoatings<T>& coatings = indices_[surface].coatings;
+    coatings.wavelengths = wavelengths();
+    coatings.is_mirror = by_wavelength.front()->is_mirror;
+    if (std::ranges::all_of(by_wavelength, [&](const TraceCoating<T>* coating) {
+            return coating->is_stated() && coating->is_mirror == coatings.is_mirror;
+        })) {
+        coatings.stated =
+            column(by_wavelength, [](const TraceCoating<T>* coating) { return coating->reflectance.value_or(T(1)); });
+        return;
+    }
+    const std::size_t layers = clear_layers_of(by_wavelength);
+    coatings.clear_layer_count = static_cast<int>(layers);
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+        std::ranges::transform(by_wavelength, std::back_inserter(clear_layers_),
+                               [&](const TraceCoating<T>* coating) { return clear_layer(coating->layers[layer]); });
+    }
+    const auto per_squared = [&](T TraceSurface<T>::*index) {
+        return column(at_, [&](const TraceLens<T>& lens) {
+            const T& n = lens.surfaces[surface].*index;
+            return T(1) / (n * n);
+        });
+    };
+    coatings.per_squared_before = per_squared(&TraceSurface<T>::index_before);
+    coatings.per_squared_after = per_squared(&TraceSurface<T>::index_after);
 }
 
 template class SpectralLens<float>;

@@ -8,6 +8,19 @@
 
 namespace lensproof::optics {
 
+/// A surface's coating at each wavelength, where packets know how to take it; else nothing.
+template <class T>
+struct SurfaceCoatings {
+    int wavelengths = 0;
+    const T* stated = nullptr;  // reflectance by wavelength, in the place of layers; of a mirror what goes on
+    bool is_mirror = false;
+    /// Of layers from the scene's side, none of which absorbs: [layer][wavelength].
+    const ClearLayer<T>* clear_layers = nullptr;
+    int clear_layer_count = 0;
+    const T* per_squared_before = nullptr;  // 1 / the squares of the media's indices, by wavelength
+    const T* per_squared_after = nullptr;
+};
+
 /// One lens at up to 65,536 wavelengths in one precision. The surfaces are the same in all of them but for indices and
 /// coatings; the indices and what absorbs lie in a table a surface, so that a packet can look its lanes' up.
 template <class T>
@@ -35,9 +48,7 @@ class SpectralLens {
         bool is_coated_sphere = false;          // centred, of a round aperture, and coated
         const T* attenuation_before = nullptr;  // null: clear at all of them
         const T* attenuation_after = nullptr;
-        /// Of its coating's layers from the scene's side, where none absorbs: of each the index, then the thickness.
-        const T* clear_layers = nullptr;
-        int clear_layer_count = 0;  // 0: it has no such coating
+        SurfaceCoatings<T> coatings;
     };
     [[nodiscard]] const std::vector<Indices>& indices() const { return indices_; }
     /// What they have at `at`, surface after surface.
@@ -49,11 +60,13 @@ class SpectralLens {
   private:
     void add_attenuation();
     void add_coatings();
+    void add_coatings_of(std::size_t surface);
 
     std::vector<TraceLens<T>> at_;
-    std::vector<SurfaceIndices<T>> table_;  // [surface][wavelength]
-    std::vector<T> attenuation_;            // [medium][wavelength]
-    std::vector<T> clear_layers_;           // [coating][layer][which][wavelength]
+    std::vector<SurfaceIndices<T>> table_;            // [surface][wavelength]
+    std::vector<T> attenuation_;                      // [medium][wavelength]
+    std::vector<ClearLayer<T>> clear_layers_;         // [coating][layer][wavelength]
+    std::vector<std::vector<T>> of_coated_surfaces_;  // what their SurfaceCoatings point to
     std::vector<Indices> indices_;
 };
 

@@ -10,7 +10,7 @@
 #include "engine/base/elementary.h"
 #include "engine/base/pack.h"
 #include "engine/optics/intersect.h"
-#include "engine/optics/packet/clear_layers.h"
+#include "engine/optics/packet/coated_lanes.h"
 #include "engine/optics/packet/media.h"
 #include "engine/optics/packet/trace_kernels.h"
 #include "engine/optics/refract.h"
@@ -150,24 +150,18 @@ class BlockTracer {
         return Numbers::iota() + Numbers(static_cast<Scalar>(packet * kLanes)) < Numbers(static_cast<Scalar>(count));
     }
 
-    /// Of a table of the lens, what each lane's wavelength has there.
     template <bool per_lane>
-    [[nodiscard]] Numbers by_wavelength(const Scalar* table, int packet) const {
+    [[nodiscard]] ByWavelength<Numbers, per_lane> by_wavelength(int packet) const {
         if constexpr (per_lane) {
-            return Numbers::gather(table, rays_.wavelength + at(packet));
+            return {rays_.wavelength + at(packet)};
         } else {
-            return Numbers(*table);
+            return {};
         }
     }
 
     template <bool per_lane>
     [[nodiscard]] Media media(int surface, int packet) const {
-        const SurfaceIndices<Scalar>* of = lens_.indices[surface].at;
-        if constexpr (per_lane) {
-            return Media::of(of, kForward, rays_.wavelength + at(packet));
-        } else {
-            return Media::of(*of, kForward);
-        }
+        return Media::of(lens_.indices[surface].at, kForward, by_wavelength<per_lane>(packet));
     }
 
     /// What one surface is to every packet.
@@ -320,7 +314,7 @@ class BlockTracer {
     /// Kept apart, so that clear glass pays for a branch alone.
     template <bool per_lane>
     [[gnu::noinline]] void deepen(const Scalar* table, int packet, const Numbers& distance, const Mask& lanes) {
-        const Numbers attenuation = by_wavelength<per_lane>(table, packet);
+        const Numbers attenuation = by_wavelength<per_lane>(packet).number(table);
         Scalar* depth = depth_.data() + packet * kLanes;
         const Numbers so_far = Numbers::load(depth);
         select(lanes, so_far + attenuation * distance, so_far).store(depth);
@@ -463,23 +457,16 @@ class BlockTracer {
         });
     }
 
-    /// Of the rays in `lanes`; 1 for the others.
+    /// Of the rays in `lanes`.
     template <bool per_lane>
     Numbers coated_transmittances(const Here& here, int packet, const Media& media, const Numbers& cos_incidence,
-                                  Mask lanes) const {
-        Numbers passing(Scalar(1));
-        if (const auto& of = lens_.indices[here.index]; of.clear_layer_count > 0) {
-            const auto look_up = [&](const Scalar* table) { return by_wavelength<per_lane>(table, packet); };
-            const auto layer_at = clear_layer_at(lens_, of, kForward, look_up);
-            const ClearPowers<Numbers> found =
-                clear_coating_powers(of.clear_layer_count, layer_at, media.before, media.after, cos_incidence);
-            passing = select(lanes && found.holds, found.powers.unpolarised().transmitted, passing);
-            lanes = lanes && !found.holds;
-        }
-        return Numbers::by_lane(lanes, passing, [&](int lane) {
-            const int wavelength = lens_.is_monochromatic() ? 0 : rays_.wavelength[at(packet) + lane];
-            return lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward, cos_incidence[lane]);
-        });
+                                  const Mask& lanes) const {
+        return coated_power(CoatedPower::transmitted, lens_.indices[here.index].coatings, kForward, media,
+                            by_wavelength<per_lane>(packet), cos_incidence, lanes, [&](int lane) {
+                                const int wavelength = per_lane ? rays_.wavelength[at(packet) + lane] : 0;
+                                return lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward,
+                                                                 cos_incidence[lane]);
+                            });
     }
 
     /// Which rays of a packet met a surface, and which go on.

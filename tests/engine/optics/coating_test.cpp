@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -445,11 +446,14 @@ TEST(Coating, AtALayersCriticalAngle) {
     EXPECT_NEAR(coating_powers(exact, 1.6, 1.6, 1e-12, true).s.transmitted, 1.0, 1e-12);
 }
 
-/// A packet's i-th lane of each of a stack's numbers.
+/// The same layer for all lanes of a packet.
 template <class Numbers>
-TraceLayer<Numbers> layer_for_all(const TraceLayer<double>& layer) {
-    return {
-        .index = Numbers(layer.index), .thickness = Numbers(layer.thickness), .extinction = Numbers(layer.extinction)};
+ClearLayer<Numbers> layer_for_all(const TraceLayer<double>& of_stack) {
+    const ClearLayer<double> layer = clear_layer(of_stack);
+    return {.index = Numbers(layer.index),
+            .phase_by_q = Numbers(layer.phase_by_q),
+            .squared = Numbers(layer.squared),
+            .per_squared = Numbers(layer.per_squared)};
 }
 
 // Packets have a single ray's bits where they say that they know; where they do not, a wave fades in a layer, is
@@ -471,13 +475,17 @@ TEST(Coating, OfPacketsIsThatOfEachRay) {
         const int count = static_cast<int>(stack.layers.size());
         const double near = of.from_scene_side ? of.n1 : of.n2;
         const double far = of.from_scene_side ? of.n2 : of.n1;
-        const auto found = clear_coating_powers(
+        const auto found = clear_coating_fields(
             count,
             [&](int layer) {
                 return layer_for_all<Numbers>(
                     stack.layers[static_cast<std::size_t>(of.from_scene_side ? count - 1 - layer : layer)]);
             },
-            Numbers(near), Numbers(far), cosine);
+            CoatedMedia<Numbers>{.near = Numbers(near),
+                                 .far = Numbers(far),
+                                 .per_squared_near = Numbers(1.0 / (near * near)),
+                                 .per_squared_far = Numbers(1.0 / (far * far))},
+            cosine);
         for (int lane = 0; lane < Numbers::kLanes; ++lane) {
             of.cosine = cosines[static_cast<std::size_t>(lane)];
             if (!found.holds[lane]) {
@@ -490,14 +498,44 @@ TEST(Coating, OfPacketsIsThatOfEachRay) {
             }
             ++known;
             const PolarisedPowers<double> alone = coating_powers(stack, of.n1, of.n2, of.cosine, of.from_scene_side);
-            EXPECT_EQ(found.powers.s.transmitted[lane], alone.s.transmitted);
-            EXPECT_EQ(found.powers.s.reflected[lane], alone.s.reflected);
-            EXPECT_EQ(found.powers.p.transmitted[lane], alone.p.transmitted);
-            EXPECT_EQ(found.powers.p.reflected[lane], alone.p.reflected);
+            EXPECT_EQ(found.fields.s.powers().transmitted[lane], alone.s.transmitted);
+            EXPECT_EQ(found.fields.s.powers().reflected[lane], alone.s.reflected);
+            EXPECT_EQ(found.fields.p.powers().transmitted[lane], alone.p.transmitted);
+            EXPECT_EQ(found.fields.p.powers().reflected[lane], alone.p.reflected);
+            EXPECT_EQ(found.fields.transmittance()[lane],
+                      coating_transmittance(stack, of.n1, of.n2, of.cosine, of.from_scene_side));
+            EXPECT_EQ(found.fields.reflectance()[lane],
+                      coating_reflectance(stack, of.n1, of.n2, of.cosine, of.from_scene_side));
         }
     }
     EXPECT_GT(known, 5000);
     EXPECT_GT(unknown, 5000);
+}
+
+// With one division they are what both polarisations' powers say, but for rounding: six roundings of one number more
+// than they have, of terms that are all positive. In float, too, through a mirror's many layers: of its fields the
+// fourth powers are no floats.
+TEST(Coating, UnpolarisedPowersAreTheMeanOfBoth) {
+    const auto expect_mean = []<class T>(const TraceCoating<T>& coating, T n1, T n2, T cosine, bool from_scene_side) {
+        const CoatedPowers<T> mean = coating_powers(coating, n1, n2, cosine, from_scene_side).unpolarised();
+        const T rounding = T(8) * std::numeric_limits<T>::epsilon();
+        EXPECT_NEAR(coating_reflectance(coating, n1, n2, cosine, from_scene_side), mean.reflected,
+                    rounding * mean.reflected);
+        EXPECT_NEAR(coating_transmittance(coating, n1, n2, cosine, from_scene_side), mean.transmitted,
+                    rounding * mean.transmitted);
+    };
+    std::mt19937 random(5);
+    for (int i = 0; i < 5000; ++i) {
+        const Incidence at = random_incidence(random);
+        expect_mean(random_stack(random, 6, true), at.n1, at.n2, at.cosine, at.from_scene_side);
+    }
+    TraceCoating<float> mirror;
+    for (int i = 0; i < 120; ++i) {
+        mirror.layers.push_back({i % 2 == 0 ? 1.38F : 2.3F, i % 2 == 0 ? 0.25F / 1.38F : 0.25F / 2.3F});
+        expect_mean(mirror, 1.0F, 1.5F, 1.0F, true);
+    }
+    EXPECT_NEAR(coating_reflectance(mirror, 1.0F, 1.5F, 1.0F, true), 1.0F, 1e-5F);
+    EXPECT_LT(coating_transmittance(mirror, 1.0F, 1.5F, 1.0F, true), 1e-9F);
 }
 
 // A stated reflectance is that at every angle; the light that the medium behind reflects totally is all reflected.

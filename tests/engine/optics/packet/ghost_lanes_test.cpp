@@ -135,6 +135,13 @@ TEST(GhostLanes, PassWhateverSurfacesHave) {
     }
 }
 
+TEST(GhostLanes, PassEveryKindOfCoating) {
+    const Lens lens = formats::load_lens("tessar");
+    const SpectralLens<double> at(coated_by_turns(at_three(lens).at()));
+    EXPECT_GT(compare(lens, at, 0.4).arrived, 75);
+    EXPECT_GT(compare_followed(lens, at, 0.4).arrived, 75);
+}
+
 // Aspheric, displaced, and of glass that absorbs one colour.
 TEST(GhostLanes, PassShapesAndGlassThatAbsorbs) {
     const Lens lens = formats::load_lens("tessar");

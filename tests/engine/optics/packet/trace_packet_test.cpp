@@ -177,6 +177,16 @@ TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
     }
 }
 
+TEST(TracePacket, TracesEveryKindOfCoating) {
+    const Lens tessar = formats::load_lens("tessar");
+    const std::vector<TraceLens<double>> coated = coated_by_turns(at_three(tessar));
+    const std::vector<Ray<double>> rays = rays_at(tessar, 400, 0.6);
+    EXPECT_GT(compare<Direction::forward>(coated, rays)[static_cast<std::size_t>(RayStatus::ok)], 20);
+    const Fates fates = compare<Direction::forward>({coated[0]}, rays);
+    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::total_internal_reflection)], 20);
+}
+
 // Of a packet's lanes some fade a little, some so much that a power of two is taken out, and some not at all.
 TEST(TracePacket, TracesGlassThatAbsorbs) {
     std::vector<TraceLens<double>> lenses = at_three(formats::load_lens("tessar"));
@@ -212,9 +222,16 @@ TEST(TracePacket, TracesMirrors) {
         {.radius_mm = -150.0, .thickness_mm = -160.0, .semi_diameter_mm = 29.0, .medium = {}}};
     set_mirror_media(mangin.surfaces);
     const Lens lens = make_lens(mangin, {});
-    const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 400, 0.3));
-    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
-    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::clipped)], 20);
+    std::vector<TraceLens<double>> at = at_three(lens);
+    for (const std::optional<double> reflectance : {std::optional<double>(), {0.9}}) {
+        for (TraceLens<double>& one : at) {
+            ASSERT_EQ(one.specials.size(), 1U);
+            one.specials[0].coating.reflectance = reflectance;
+        }
+        const Fates fates = compare<Direction::forward>(at, rays_at(lens, 400, 0.3));
+        EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+        EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::clipped)], 20);
+    }
 }
 
 // An ideal lens behind a grating and a kinoform on a curved, tilted surface, at three wavelengths: their phases differ
