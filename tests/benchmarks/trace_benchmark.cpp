@@ -49,11 +49,12 @@ void count(benchmark::State& state, std::size_t surfaces) {
         benchmark::Counter(rays * static_cast<double>(surfaces), benchmark::Counter::kIsRate);
 }
 
-/// The batch tracer at one level; `wavelengths` of them, so that one is a broadcast and more are looked up.
+/// The batch tracer at one level; `wavelengths` of them, so that one is a broadcast and more are looked up. `coatings`:
+/// as `load_lens` has them.
 template <class T>
-void time_batch(benchmark::State& state, const std::string& name, SimdLevel level, optics::Carry carry,
-                int wavelengths) {
-    const optics::Lens lens = formats::load_lens(name);
+void time_batch(benchmark::State& state, const std::string& name, SimdLevel level, optics::Carry carry, int wavelengths,
+                const std::vector<std::string>& coatings) {
+    const optics::Lens lens = formats::load_lens(name, {.coatings = coatings});
     const std::vector<Ray<double>> rays = passing_rays(lens, optics::Direction::reverse);
     std::vector<double> nm(static_cast<std::size_t>(wavelengths), kWavelengthNm);
     const optics::SpectralLens<T> at = optics::at_wavelengths<T>(lens, nm);
@@ -195,15 +196,17 @@ constexpr std::array kBatchLenses = {"tessar",       "petzval",       "double-ga
 
 template <class T>
 void register_batches(const std::string& lens, const std::string& type) {
-    const auto add = [&](SimdLevel level, const std::string& what, optics::Carry carry, int wavelengths) {
+    const auto add = [&](SimdLevel level, const std::string& what, optics::Carry carry, int wavelengths,
+                         const std::vector<std::string>& coatings = {}) {
         benchmark::RegisterBenchmark(
             batch_name(lens, type + "/" + simd_name(level) + "/" + what).c_str(),
-            [=](benchmark::State& state) { time_batch<T>(state, lens, level, carry, wavelengths); });
+            [=](benchmark::State& state) { time_batch<T>(state, lens, level, carry, wavelengths, coatings); });
     };
     for (const SimdLevel level : available_simd_levels()) {
         add(level, "geometry", optics::Carry::geometry, 1);
         add(level, "fresnel", optics::Carry::transmittance, 1);
         add(level, "fresnel_64_wavelengths", optics::Carry::transmittance, 64);
+        add(level, "mgf2_64_wavelengths", optics::Carry::transmittance, 64, {"mgf2"});
     }
 }
 
