@@ -64,6 +64,17 @@ constexpr Intersection<T> intersect_from_near(const Vec3<T>& origin, const Vec3<
             .hit = meets && T(1) - c * z > T(0)};
 }
 
+/// The same of the plane c = 0, to the bit: with a root less, since the root of a rounded square is what was squared.
+template <class T>
+constexpr Intersection<T> intersect_plane_from_near(const Vec3<T>& origin, const Vec3<T>& direction, const T& heading) {
+    const T s = (T(0) - T(2) * origin.z) / (direction.z + direction.z);
+    return {.point = {origin.x + s * direction.x, origin.y + s * direction.y, origin.z + s * direction.z},
+            .distance = s,
+            .cos_incidence = direction.z * heading,
+            .sin2_incidence = direction.x * direction.x + direction.y * direction.y,
+            .hit = direction.z * heading > T(0) && direction.z * direction.z > T(0)};
+}
+
 /// Along the ray to its closest approach to the vertex (0, 0, 0), mm.
 template <class T>
 constexpr T distance_to_vertex(const Vec3<T>& origin, const Vec3<T>& direction) {

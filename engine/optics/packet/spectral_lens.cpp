@@ -73,11 +73,16 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
                               .reverse_ratio = surface.reverse_ratio});
         }
     }
+    ratios_.reserve(2 * table_.size());
     for (std::size_t i = 0; i < surfaces; ++i) {
         const std::span<const SurfaceIndices<T>> of_surface(table_.data() + i * count, count);
+        std::ranges::transform(of_surface, std::back_inserter(ratios_), &SurfaceIndices<T>::forward_ratio);
+        std::ranges::transform(of_surface, std::back_inserter(ratios_), &SurfaceIndices<T>::reverse_ratio);
         const int special = at_.front().surfaces[i].special;
         indices_.push_back(
             {.at = of_surface.data(),
+             .forward_ratios = ratios_.data() + 2 * i * count,
+             .reverse_ratios = ratios_.data() + (2 * i + 1) * count,
              .bends = std::ranges::any_of(of_surface, [](const auto& one) { return one.before != one.after; }),
              .is_coated_sphere = special >= 0 && at_.front().specials[static_cast<std::size_t>(special)].is_sphere()});
     }

@@ -44,6 +44,8 @@ class SpectralLens {
     /// One surface's numbers, each by wavelength.
     struct Indices {
         const SurfaceIndices<T>* at = nullptr;
+        const T* forward_ratios = nullptr;  // what `at` has, for who needs nothing else
+        const T* reverse_ratios = nullptr;
         bool bends = true;                      // at some of the wavelengths: its media differ
         bool is_coated_sphere = false;          // centred, of a round aperture, and coated
         const T* attenuation_before = nullptr;  // null: clear at all of them
@@ -64,6 +66,7 @@ class SpectralLens {
 
     std::vector<TraceLens<T>> at_;
     std::vector<SurfaceIndices<T>> table_;            // [surface][wavelength]
+    std::vector<T> ratios_;                           // [surface][forward, reverse][wavelength]
     std::vector<T> attenuation_;                      // [medium][wavelength]
     std::vector<ClearLayer<T>> clear_layers_;         // [coating][layer][wavelength]
     std::vector<std::vector<T>> of_coated_surfaces_;  // what their SurfaceCoatings point to

@@ -164,6 +164,14 @@ class BlockTracer {
         return Media::of(lens_.indices[surface].at, kForward, by_wavelength<per_lane>(packet));
     }
 
+    /// Nothing but what bends the lanes.
+    [[nodiscard]] Media ratio_of_media(int surface, int packet) const {
+        const auto& of = lens_.indices[surface];
+        return {.ratio = by_wavelength<true>(packet).number(kForward ? of.forward_ratios : of.reverse_ratios),
+                .before = {},
+                .after = {}};
+    }
+
     /// What one surface is to every packet.
     struct Here {
         const TraceSurface<Scalar>& surface;
@@ -190,11 +198,11 @@ class BlockTracer {
         last_vertex_z_ = surface.vertex_z;
     }
 
-    /// What a sphere does to light that goes on.
+    /// What a sphere is to light that goes on.
     enum class Sphere {
-        open,    // nothing: its media are of one index
-        bare,    // bends it, and takes what Fresnel's equations say
-        coated,  // or its coating
+        opening,  // flat, between media of one index, as a stop is: nothing bends, and all that is inside passes
+        bare,     // bends it, and takes what Fresnel's equations say
+        coated,   // or its coating
     };
 
     template <bool from_far, bool per_lane>
@@ -202,10 +210,10 @@ class BlockTracer {
         const auto& of = lens_.indices[here.index];
         if (carry != Carry::geometry && of.is_coated_sphere) {
             pass_coated<from_far, per_lane>(here);
-        } else if (of.bends) {
+        } else if (of.bends || here.surface.curvature != Scalar(0)) {
             pass_packets<from_far, per_lane, Sphere::bare>(here);
         } else {
-            pass_packets<from_far, per_lane, Sphere::open>(here);
+            pass_packets<from_far, per_lane, Sphere::opening>(here);
         }
     }
 
@@ -219,7 +227,9 @@ class BlockTracer {
     void pass_packets(const Here& here) {
         [[maybe_unused]] const Media the_same = media<false>(here.index, 0);
         for (int packet = 0; packet < packets_; ++packet) {
-            if constexpr (per_lane) {
+            if constexpr (per_lane && sphere == Sphere::bare && carry != Carry::all) {
+                pass_packet<from_far, true, sphere>(here, packet, ratio_of_media(here.index, packet));
+            } else if constexpr (per_lane) {
                 pass_packet<from_far, true, sphere>(here, packet, media<true>(here.index, packet));
             } else {
                 pass_packet<from_far, false, sphere>(here, packet, the_same);
@@ -227,8 +237,8 @@ class BlockTracer {
         }
     }
 
-    /// Between media of one index, as of a stop, nothing bends, and all that is inside passes: to the bit what
-    /// refracting does, since the root of a rounded square is what was squared.
+    /// An opening is passed to the bit as refracting there would have it, since the root of a rounded square is what
+    /// was squared.
     template <bool from_far, bool per_lane, Sphere sphere>
     void pass_packet(const Here& here, int packet, const Media& media) {
         const Mask going = this->going(packet);
@@ -237,9 +247,11 @@ class BlockTracer {
         }
         const State before = load(packet);
         const Vec3<Numbers> near = moved_near<from_far>(here, before);
-        const Intersection<Numbers> met = intersect_from_near(near, before.direction, curvature(here), heading());
+        const Intersection<Numbers> met = sphere != Sphere::opening
+                                              ? intersect_from_near(near, before.direction, curvature(here), heading())
+                                              : intersect_plane_from_near(near, before.direction, heading());
         const Refraction<Numbers> bent =
-            sphere != Sphere::open
+            sphere != Sphere::opening
                 ? bent_at(here, before, met, media)
                 : Refraction<Numbers>{
                       .direction = before.direction, .cos_refraction = met.cos_incidence, .transmitted = Mask(true)};

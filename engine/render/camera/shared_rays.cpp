@@ -80,6 +80,10 @@ void BasicSharedRays<T>::take_heroes(const CameraPathBuffer& paths, std::size_t 
         const Vec2d centre = path_pixel(paths, first + i, sensor_, is_box_);
         chunk_.centre_x[i] = centre.x;
         chunk_.centre_y[i] = centre.y;
+        const spectral::PathWavelengths wavelengths = grid_.path(paths.wavelength[first + i]);
+        for (std::size_t m = 1; m < spectral::kWavelengthsPerPath; ++m) {
+            chunk_.other_wavelengths[m - 1][i] = wavelengths.index[m];
+        }
     }
 }
 
@@ -119,13 +123,11 @@ void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first)
     turn(paths.direction.y, turned_.direction.y, std::negate<>());
     turn(paths.direction.z, turned_.direction.z, std::negate<>());
     turned_.size = chunk_.size;
-    for (std::size_t m = 1; m < spectral::kWavelengthsPerPath; ++m) {
+    for (std::size_t m = 0; m < chunk_.others.size(); ++m) {
         copy_rays(turned_, rays_);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(chunk_.size); ++i) {
-            rays_.wavelength[i] = grid_.path(paths.wavelength[first + i]).index[m];
-        }
+        std::copy_n(chunk_.other_wavelengths[m].begin(), chunk_.size, rays_.wavelength.begin());
         optics::trace_batch<optics::Direction::forward>(*lens_, rays_, tracing_);
-        FilmMeetings& meetings = chunk_.others[m - 1];
+        FilmMeetings& meetings = chunk_.others[m];
         meet_film(lens_->at(0).image_z, pupil_->map().plane_z(), *kernels_, rays_, meetings);
         if (chunk_.has_pdfs) {
             find_pupil_pdfs(*pupil_, std::span(rays_.wavelength).first(static_cast<std::size_t>(rays_.size)), *kernels_,

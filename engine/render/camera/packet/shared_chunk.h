@@ -31,6 +31,7 @@ struct alignas(optics::kPacketAlignment) SharedPaths {
     SharedColumn<double> centre_y;
     SharedColumn<double> hero_weight;  // as CameraPathBuffer has them
     SharedColumn<double> hero_etendue;
+    std::array<SharedColumn<std::uint16_t>, spectral::kWavelengthsPerPath - 1> other_wavelengths;
     std::array<FilmMeetings, spectral::kWavelengthsPerPath - 1> others;
     std::array<SharedColumn<float>, spectral::kWavelengthsPerPath> weight;  // as SharedWeights has them
     SharedColumn<double> shared_pdf;
