@@ -64,7 +64,8 @@ constexpr Intersection<T> intersect_from_near(const Vec3<T>& origin, const Vec3<
             .hit = meets && T(1) - c * z > T(0)};
 }
 
-/// The same of the plane c = 0, to the bit: with a root less, since the root of a rounded square is what was squared.
+/// The same of the plane c = 0, to the bit where it is hit: a root less, since the root of a rounded square is what was
+/// squared.
 template <class T>
 constexpr Intersection<T> intersect_plane_from_near(const Vec3<T>& origin, const Vec3<T>& direction, const T& heading) {
     const T s = (T(0) - T(2) * origin.z) / (direction.z + direction.z);

@@ -78,13 +78,12 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
         const std::span<const SurfaceIndices<T>> of_surface(table_.data() + i * count, count);
         std::ranges::transform(of_surface, std::back_inserter(ratios_), &SurfaceIndices<T>::forward_ratio);
         std::ranges::transform(of_surface, std::back_inserter(ratios_), &SurfaceIndices<T>::reverse_ratio);
-        const int special = at_.front().surfaces[i].special;
         indices_.push_back(
             {.at = of_surface.data(),
              .forward_ratios = ratios_.data() + 2 * i * count,
              .reverse_ratios = ratios_.data() + (2 * i + 1) * count,
              .bends = std::ranges::any_of(of_surface, [](const auto& one) { return one.before != one.after; }),
-             .is_coated_sphere = special >= 0 && at_.front().specials[static_cast<std::size_t>(special)].is_sphere()});
+             .is_coated_sphere = is_coated_sphere(at_.front(), i)});
     }
     add_attenuation();
     add_coatings();
@@ -149,6 +148,9 @@ void SpectralLens<T>::add_coatings_of(std::size_t surface) {
         return;
     }
     const std::size_t layers = clear_layers_of(by_wavelength);
+    if (layers == 0) {
+        return;
+    }
     coatings.clear_layer_count = static_cast<int>(layers);
     for (std::size_t layer = 0; layer < layers; ++layer) {
         std::ranges::transform(by_wavelength, std::back_inserter(clear_layers_),

@@ -375,7 +375,7 @@ class BlockTracer {
         add_loss_of<per_lane, sphere>(here, packet, media, met, bent, fate.on);
     }
 
-    /// A surface with a shape, a frame, a coating or an opening of its own.
+    /// A surface with a shape, a frame or an opening of its own.
     template <bool per_lane>
     [[gnu::noinline, gnu::flatten]] void pass_special(const Here& here) {
         const SpecialSurface<Scalar>& special = lens_.specials[here.surface.special];

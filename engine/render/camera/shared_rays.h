@@ -34,9 +34,10 @@ void find_pupil_pdfs(const pupil::PupilSlices& pupil, std::span<const std::uint1
 /// hero alone, with w = 4 τ / p.
 ///
 /// Where nobody asks for pdfs, those of the others are not looked up: the techniques whose ray arrives in the pixel get
-/// equal parts, as if each p_m were the hero's p. Any parts whose sum is one for every ray leave the mean as it is, and
-/// where the ray arrives the pdfs differ as the areas of the pupil do, by little: the variance of pictures stays within
-/// a percent, and a tenth of a path's time is saved.
+/// equal parts, as if each p_m were the hero's p. Any parts whose sum is one for every ray leave the mean as it is, if
+/// whoever gets a part draws the ray now and then: a lens's map draws from the whole rear element, too, wherever it has
+/// light. Where the ray arrives the pdfs differ as the areas of the pupil do, by little: the variance of pictures stays
+/// within a percent, and a tenth of a path's time is saved.
 ///
 /// The hero's own p and τ are those that its path was made with; the other wavelengths' rays are traced.
 ///
