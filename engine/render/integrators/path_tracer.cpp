@@ -12,20 +12,32 @@ namespace lensproof::render {
 
 namespace {
 
+class PathWalk;
+
 /// Light that reaches a path where it has arrived, if its way is free.
 struct SampledLight {
-    scene::Segment segment;
+    PathWalk* path = nullptr;
     spectral::SpectralSample light;  // but for what a map has at
     scene::MapPlace place;
     bool is_hero_alone = false;
+};
+
+/// What paths have sampled, and what has to be free for it to reach them.
+struct SampledLights {
+    std::vector<SampledLight> lights;
+    std::vector<scene::Segment> segments;  // as many
+
+    void clear() {
+        lights.clear();
+        segments.clear();
+    }
 };
 
 /// For a surface that a path has met: the next set of its sampler's, and the set after for lights.
 struct SurfaceNumbers {
     scene::BsdfNumbers bsdf;
     double roulette = 0.0;
-    double of_light = 0.0;
-    Vec2d of_light_point;
+    const scene::LightNumbers* light = nullptr;
 };
 
 /// A path on its way, between one question to the scene's geometry and the next.
@@ -33,52 +45,18 @@ class PathWalk {
   public:
     /// `result` is what the path brings.
     PathWalk(const scene::Scene& scene, const PathSettings& settings, PathStart& start, PathRadiance& result)
-        : scene_(&scene), settings_(&settings), start_(&start), ray_(start.ray), result_(&result) {
+        : scene_(&scene), settings_(&settings), start_(&start), result_(&result) {
         result = {};
     }
 
-    [[nodiscard]] const Ray<double>& ray() const { return ray_; }
+    [[nodiscard]] PathSampler& sampler() { return start_->numbers; }
 
     /// The ray has left the scene, and a map shows its direction there.
-    void leave_at(const scene::MapPlace& place) { ahead_ = place; }
-
-    [[nodiscard]] PathSampler& sampler() { return start_->numbers; }
-    /// Returns where those for lights lie.
-    scene::LightNumbers* take_numbers(const SurfaceNumbers& numbers) {
-        numbers_ = numbers.bsdf;
-        roulette_ = numbers.roulette;
-        light_numbers_.of_light = numbers.of_light;
-        light_numbers_.of_point = numbers.of_light_point;
-        light_numbers_.ahead = {};
-        return &light_numbers_;
-    }
-
-    /// Goes on at what the ray has met. Whether the path has another ray.
-    bool arrive(const std::optional<scene::SurfaceHit>& hit) {
-        sampled_.reset();
-        ++result_->rays;
-        if (bounce_ == 0 && start_->drawn != nullptr) {
-            enter(hit ? LightOrigin{hit->point, false} : LightOrigin{-1.0 * ray_.direction, true});
-        }
-        if (hit) {
-            return turn_at(*hit);
-        }
-        leave_scene();
-        return false;
-    }
-
-    /// What has to be free for a light to be seen from where the path has arrived. Nothing: it sees none.
-    [[nodiscard]] const scene::Segment* to_light() const { return sampled_ ? &sampled_->segment : nullptr; }
-    void see_light() { add(scene::light_of(sampled_->light, sampled_->place, start_->path), sampled_->is_hero_alone); }
-
-  private:
-    [[nodiscard]] bool is_mirror_wanted() const { return bounce_ == 0 && settings_->begins_at_mirror; }
-    [[nodiscard]] bool counts() const { return bounce_ >= settings_->min_bounces; }
-
-    void leave_scene() {
+    void leave_scene(const Ray<double>& ray, const scene::MapPlace& place) {
+        end_ray({-1.0 * ray.direction, true});
         if (counts() || settings_->takes_sky_by_camera) {
             scene_->lights.visit_infinity(
-                ray_.direction, start_->path,
+                ray.direction, start_->path,
                 [&](scene::Lights::Emission light) {
                     if (light.is_sun && bounce_ == 0 && settings_->leaves_suns_out) {
                         return;
@@ -86,20 +64,24 @@ class PathWalk {
                     light.radiance = scene::scaled(light.radiance, counts() ? 1.0 : sky_by_camera(light.start_pdf));
                     add_found(light, 1.0);
                 },
-                ahead_);
+                place);
         }
     }
 
-    bool turn_at(const scene::SurfaceHit& hit) {
-        throughput_ *= body_transmittance(*scene_, hit, ray_.direction, start_->path);
+    /// Goes on at what the ray has met. Whether the path has a next ray: `next`, which may be `ray` itself. Adds what
+    /// it samples.
+    bool arrive(const Ray<double>& ray, const scene::SurfaceHit& hit, const SurfaceNumbers& numbers,
+                SampledLights& sampled, Ray<double>& next) {
+        end_ray({hit.point, false});
+        throughput_ *= body_transmittance(*scene_, hit, ray.direction, start_->path);
         if (counts()) {
-            add_found(scene_->lights.emitted(hit, from_, ray_.direction, start_->path),
-                      std::abs(dot(hit.geometric_normal, ray_.direction)));
+            add_found(scene_->lights.emitted(hit, from_, ray.direction, start_->path),
+                      std::abs(dot(hit.geometric_normal, ray.direction)));
         }
         if (bounce_ == settings_->max_bounces && bounce_ > 0) {
             return false;
         }
-        const Vec3d backwards = -1.0 * ray_.direction;
+        const Vec3d backwards = -1.0 * ray.direction;
         const PathVertex vertex(hit, backwards, *scene_, start_->path);
         if (bounce_ == 0 && start_->wants_first) {
             note_first(vertex);
@@ -110,14 +92,30 @@ class PathWalk {
         if (!scene::is_delta(vertex.bsdf)) {
             start_->numbers.skip();
             if (!is_mirror_wanted()) {
-                sample_light(vertex);
+                sample_light(vertex, *numbers.light, sampled);
             }
         }
-        return turn(vertex);
+        return turn(vertex, numbers, next);
     }
 
-    bool turn(const PathVertex& vertex) {
-        const auto drawn = scene::sample(vertex.bsdf, vertex.wo, numbers_, scene::Transport::radiance);
+    void see(const SampledLight& sampled) {
+        add(scene::light_of(sampled.light, sampled.place, start_->path), sampled.is_hero_alone);
+    }
+
+  private:
+    [[nodiscard]] bool is_mirror_wanted() const { return bounce_ == 0 && settings_->begins_at_mirror; }
+    [[nodiscard]] bool counts() const { return bounce_ >= settings_->min_bounces; }
+
+    void end_ray(const LightOrigin& end) {
+        ++result_->rays;
+        if (bounce_ == 0 && start_->drawn != nullptr) {
+            const CameraRay& drawn = *start_->drawn;
+            weight_.enter(drawn.camera->entrance_ratio(drawn.camera->pdf(end, drawn.ray, start_->path), drawn.pdf));
+        }
+    }
+
+    bool turn(const PathVertex& vertex, const SurfaceNumbers& numbers, Ray<double>& next) {
+        const auto drawn = scene::sample(vertex.bsdf, vertex.wo, numbers.bsdf, scene::Transport::radiance);
         if (!drawn || (is_mirror_wanted() && !drawn->is_delta)) {
             return false;
         }
@@ -130,13 +128,13 @@ class PathWalk {
             is_hero_alone_ = true;
             weight_.hero_goes_alone();
         }
-        if (!survives_roulette(*settings_, bounce_, roulette_, throughput_)) {
+        if (!survives_roulette(*settings_, bounce_, numbers.roulette, throughput_)) {
             return false;
         }
         weight_.turn(weighed(vertex, *drawn, onwards));
         from_ = vertex.hit.point;
-        ray_.origin = scene::ray_origin(vertex.hit, onwards);
-        ray_.direction = onwards;
+        next.origin = scene::ray_origin(vertex.hit, onwards);
+        next.direction = onwards;
         ++bounce_;
         return true;
     }
@@ -147,11 +145,6 @@ class PathWalk {
         } else {
             result_->radiance += light;
         }
-    }
-
-    void enter(const LightOrigin& first) {
-        const CameraRay& drawn = *start_->drawn;
-        weight_.enter(drawn.camera->entrance_ratio(drawn.camera->pdf(first, drawn.ray, start_->path), drawn.pdf));
     }
 
     /// Only as much of a turn as weights need.
@@ -174,10 +167,10 @@ class PathWalk {
         }
     }
 
-    void sample_light(const PathVertex& vertex) {
-        const auto light =
-            scene_->lights.sample(vertex.hit.point, start_->path, light_numbers_,
-                                  [&](const Vec3d& direction) { return vertex.scattering(direction)[0]; });
+    void sample_light(const PathVertex& vertex, const scene::LightNumbers& numbers, SampledLights& sampled) {
+        const auto light = scene_->lights.sample(vertex.hit.point, start_->path, numbers, [&](const Vec3d& direction) {
+            return vertex.scattering(direction)[0];
+        });
         if (!light) {
             return;
         }
@@ -191,12 +184,11 @@ class PathWalk {
         const double to_light =
             light->pdf > 0.0 ? scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
         const double weight = weight_.of_sample(*light, weighed(vertex, light->direction, wi, to_light));
-        SampledLight& sampled = sampled_.emplace();
-        sampled.segment.from = scene::ray_origin(vertex.hit, light->direction);
-        sampled.segment.to = light->end;
-        sampled.light = static_cast<float>(weight) * (throughput_ * scattering * light->value);
-        sampled.place = light->place;
-        sampled.is_hero_alone = is_hero_alone_;
+        sampled.segments.push_back({scene::ray_origin(vertex.hit, light->direction), light->end});
+        sampled.lights.push_back({.path = this,
+                                  .light = static_cast<float>(weight) * (throughput_ * scattering * light->value),
+                                  .place = light->place,
+                                  .is_hero_alone = is_hero_alone_});
     }
 
     void note_first(const PathVertex& vertex) {
@@ -209,76 +201,77 @@ class PathWalk {
     const scene::Scene* scene_;
     const PathSettings* settings_;
     PathStart* start_;
-    Ray<double> ray_;
     Vec3d from_;  // the surface point that the ray left
     int bounce_ = 0;
     bool is_hero_alone_ = false;
     spectral::SpectralSample throughput_{1.0F};
     CameraMisWeight weight_;
-    scene::MapPlace ahead_;
-    scene::BsdfNumbers numbers_;
-    double roulette_ = 0.0;
-    scene::LightNumbers light_numbers_;
-    std::optional<SampledLight> sampled_;
     PathRadiance* result_;
 };
 
-/// To the walks that have met something.
-void give_numbers(const scene::Lights& lights, std::span<PathWalk* const> walks,
-                  std::span<const std::optional<scene::SurfaceHit>> hits) {
-    constexpr std::size_t kWalks = NumberColumns::kMost / 2;
-    NumberColumns columns;
-    std::array<PathWalk*, kWalks> arrived{};
-    std::array<scene::LightNumbers*, kWalks> for_lights{};
-    std::array<Vec3d, kWalks> points;
-    for (std::size_t first = 0; first < walks.size(); first += kWalks) {
-        const std::size_t end = std::min(walks.size(), first + kWalks);
+/// The numbers of some paths, of those that have met something, drawn together.
+class ArrivalNumbers {
+  public:
+    static constexpr std::size_t kMost = NumberColumns::kMost / 2;
+
+    void draw(const scene::Lights& lights, std::span<PathWalk* const> walks,
+              std::span<const std::optional<scene::SurfaceHit>> hits) {
+        std::array<Vec3d, kMost> points;
+        std::array<PathSampler*, kMost> samplers{};
         std::size_t count = 0;
-        for (std::size_t i = first; i < end; ++i) {
+        for (std::size_t i = 0; i < walks.size(); ++i) {
             if (hits[i]) {
                 points[count] = hits[i]->point;
-                arrived[count++] = walks[i];
+                samplers[count++] = &walks[i]->sampler();
             }
         }
-        columns.size = 0;
-        columns.with_matt = static_cast<int>(count);
+        columns_.size = 0;
+        columns_.with_matt = static_cast<int>(count);
         for (const std::uint64_t sets : {1, 2}) {
             for (std::size_t k = 0; k < count; ++k) {
-                columns.add(arrived[k]->sampler(), sets);
+                columns_.add(*samplers[k], sets);
             }
         }
-        number_kernels().draw(columns);
+        number_kernels().draw(columns_);
         for (std::size_t k = 0; k < count; ++k) {
-            const auto& [u0, u1, u2, u3] = columns.number;
+            samplers[k]->skip();
             const std::size_t after = count + k;
-            arrived[k]->sampler().skip();
-            for_lights[k] = arrived[k]->take_numbers({.bsdf = {u0[k], u1[k], u2[k], columns.matt_direction(k)},
-                                                      .roulette = u3[k],
-                                                      .of_light = u0[after],
-                                                      .of_light_point = {u1[after], u2[after]}});
+            const auto& u = columns_.number;
+            light_[k] = {.of_light = u[0][after], .of_point = {u[1][after], u[2][after]}};
         }
-        lights.draw_ahead(std::span(points).first(count), std::span(for_lights).first(count));
+        lights.draw_ahead(std::span(points).first(count), std::span(light_).first(count));
     }
-}
 
-/// Of the walks that have met nothing.
-void find_in(const scene::Environment& map, std::span<PathWalk* const> walks,
-             std::span<const std::optional<scene::SurfaceHit>> hits) {
+    /// Of the k-th that has met something.
+    [[nodiscard]] SurfaceNumbers operator[](std::size_t k) const {
+        const auto& u = columns_.number;
+        return {
+            .bsdf = {u[0][k], u[1][k], u[2][k], columns_.matt_direction(k)}, .roulette = u[3][k], .light = &light_[k]};
+    }
+
+  private:
+    NumberColumns columns_;
+    std::array<scene::LightNumbers, kMost> light_;
+};
+
+/// Where it shows the directions of rays that have met nothing.
+void find_in(const scene::Environment& map, std::span<const Ray<double>> rays,
+             std::span<const std::optional<scene::SurfaceHit>> hits, std::span<scene::MapPlace> places) {
     constexpr std::size_t kMost = 64;
-    std::array<PathWalk*, kMost> leaving{};
+    std::array<std::size_t, kMost> leaving{};
     std::array<Vec3d, kMost> directions;
-    std::array<scene::MapPlace, kMost> places;
-    for (std::size_t i = 0; i < walks.size();) {
+    std::array<scene::MapPlace, kMost> found;
+    for (std::size_t i = 0; i < rays.size();) {
         std::size_t count = 0;
-        for (; i < walks.size() && count < kMost; ++i) {
+        for (; i < rays.size() && count < kMost; ++i) {
             if (!hits[i]) {
-                directions[count] = walks[i]->ray().direction;
-                leaving[count++] = walks[i];
+                directions[count] = rays[i].direction;
+                leaving[count++] = i;
             }
         }
-        map.find(std::span(directions).first(count), places);
+        map.find(std::span(directions).first(count), found);
         for (std::size_t k = 0; k < count; ++k) {
-            leaving[k]->leave_at(places[k]);
+            places[leaving[k]] = found[k];
         }
     }
 }
@@ -294,51 +287,53 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
     walks.reserve(together);
     std::vector<PathWalk*> going;
     going.reserve(together);
+    std::vector<Ray<double>> rays;  // theirs
+    rays.reserve(together);
     std::size_t begun = 0;
     for (; begun < together; ++begun) {
         going.push_back(&walks.emplace_back(scene, settings, starts[begun], found[begun]));
+        rays.push_back(starts[begun].ray);
     }
     std::vector<PathWalk*> ended;
-    std::vector<Ray<double>> rays;
     std::vector<std::optional<scene::SurfaceHit>> hits(together);
-    std::vector<PathWalk*> seeing;
-    std::vector<scene::Segment> segments;
+    std::vector<scene::MapPlace> places(together);
+    ArrivalNumbers numbers;
+    SampledLights sampled;
     std::vector<std::uint8_t> are_blocked(together);
     while (!going.empty()) {
-        rays.clear();
-        for (PathWalk* walk : going) {
-            rays.push_back(walk->ray());
-        }
         scene::intersect(*scene.geometry, rays, hits);
         if (const scene::Environment* map = scene.lights.map()) {
-            find_in(*map, going, hits);
+            find_in(*map, rays, hits, places);
         }
-        give_numbers(scene.lights, going, hits);
-        seeing.clear();
-        segments.clear();
+        sampled.clear();
         ended.clear();
         std::size_t still_going = 0;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            PathWalk* walk = going[i];
-            if (walk->arrive(hits[i])) {
-                going[still_going++] = walk;
-            } else {
-                ended.push_back(walk);
-            }
-            if (const scene::Segment* segment = walk->to_light()) {
-                seeing.push_back(walk);
-                segments.push_back(*segment);
+        for (std::size_t first = 0; first < going.size(); first += ArrivalNumbers::kMost) {
+            const std::size_t count = std::min(ArrivalNumbers::kMost, going.size() - first);
+            numbers.draw(scene.lights, std::span(going).subspan(first, count), std::span(hits).subspan(first, count));
+            for (std::size_t i = first, k = 0; i < first + count; ++i) {
+                PathWalk* walk = going[i];
+                if (!hits[i]) {
+                    walk->leave_scene(rays[i], places[i]);
+                    ended.push_back(walk);
+                } else if (walk->arrive(rays[i], *hits[i], numbers[k++], sampled, rays[still_going])) {
+                    going[still_going++] = walk;
+                } else {
+                    ended.push_back(walk);
+                }
             }
         }
         going.resize(still_going);
-        scene::find_occluded(*scene.geometry, segments, are_blocked);
-        for (std::size_t i = 0; i < segments.size(); ++i) {
+        rays.resize(still_going);
+        scene::find_occluded(*scene.geometry, sampled.segments, are_blocked);
+        for (std::size_t i = 0; i < sampled.lights.size(); ++i) {
             if (are_blocked[i] == 0) {
-                seeing[i]->see_light();
+                sampled.lights[i].path->see(sampled.lights[i]);
             }
         }
         for (std::size_t i = 0; i < ended.size() && begun < starts.size(); ++i, ++begun) {
             going.push_back(std::construct_at(ended[i], scene, settings, starts[begun], found[begun]));
+            rays.push_back(starts[begun].ray);
         }
     }
 }
@@ -348,22 +343,26 @@ PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const
     PathStart start{.ray = ray, .path = path, .numbers = numbers};
     PathRadiance found;
     PathWalk walk(scene, settings, start, found);
+    Ray<double> next = ray;
+    SampledLights sampled;
     for (bool is_going = true; is_going;) {
-        const auto [origin, direction] = walk.ray();
-        const auto hit = scene::intersect(*scene.geometry, origin, direction, 0.0, kInfinity);
-        if (hit) {
-            const auto u = walk.sampler().next();
-            const auto after = walk.sampler().peek();
-            walk.take_numbers({.bsdf = {u[0], u[1], u[2], cosine_direction(u[1], u[2])},
-                               .roulette = u[3],
-                               .of_light = after[0],
-                               .of_light_point = {after[1], after[2]}});
+        const auto hit = scene::intersect(*scene.geometry, next.origin, next.direction, 0.0, kInfinity);
+        if (!hit) {
+            walk.leave_scene(next, {});
+            break;
         }
-        is_going = walk.arrive(hit);
-        const scene::Segment* segment = walk.to_light();
-        if (segment != nullptr && !scene::is_occluded(*scene.geometry, segment->from, segment->to)) {
-            walk.see_light();
+        const auto u = walk.sampler().next();
+        const auto after = walk.sampler().peek();
+        const scene::LightNumbers light{.of_light = after[0], .of_point = {after[1], after[2]}};
+        is_going = walk.arrive(
+            next, *hit, {.bsdf = {u[0], u[1], u[2], cosine_direction(u[1], u[2])}, .roulette = u[3], .light = &light},
+            sampled, next);
+        for (std::size_t i = 0; i < sampled.lights.size(); ++i) {
+            if (!scene::is_occluded(*scene.geometry, sampled.segments[i].from, sampled.segments[i].to)) {
+                walk.see(sampled.lights[i]);
+            }
         }
+        sampled.clear();
     }
     numbers = start.numbers;
     return found;

@@ -117,16 +117,16 @@ std::optional<LightSample> ShiningSurface::sample(const AreaLight& light, const 
                 drawn.pdf_per_mm2, drawn.uv);
 }
 
-void ShiningSurface::draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* const> numbers) const {
+void ShiningSurface::draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers> numbers) const {
     for (std::size_t first = 0; !facets_.is_empty() && first < points.size(); first += ViewColumns::kMost) {
         const std::size_t count = std::min(points.size() - first, ViewColumns::kMost);
         ViewColumns columns;
         for (std::size_t i = 0; i < count; ++i) {
-            columns.add(points[first + i], numbers[first + i]->of_point);
+            columns.add(points[first + i], numbers[first + i].of_point);
         }
         facet_kernels().see(facets_, columns);
         for (std::size_t i = 0; i < count; ++i) {
-            numbers[first + i]->ahead = SurfaceDraw{this, columns.view(i)};
+            numbers[first + i].ahead = SurfaceDraw{this, columns.view(i)};
         }
     }
 }

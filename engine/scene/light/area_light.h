@@ -48,7 +48,7 @@ class ShiningSurface {
                                                     const LightNumbers& numbers) const;
     /// Draws what these numbers draw of it for these points, as `sample` would, together; nothing where it is not made
     /// of a few flat pieces.
-    void draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* const> numbers) const;
+    void draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers> numbers) const;
     /// With which `sample` draws the point `at` from `from`; `per_mm2`: with which `sampler` does, `cosine`: that of
     /// the light's direction there.
     [[nodiscard]] double pdf(const Vec3d& at, double per_mm2, const Vec3d& from, double cosine) const;

@@ -207,7 +207,7 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
             .leaving_pdf = entry.probability * area.leaving_pdf(per_mm2)};
 }
 
-void Lights::draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* const> numbers) const {
+void Lights::draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers> numbers) const {
     if (lights_.size() == 1 && lights_.front().surface) {
         lights_.front().surface->draw_ahead(points, numbers);
     }
@@ -218,10 +218,10 @@ void Lights::draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* c
     for (std::size_t i = 0; map_ != nullptr && i < numbers.size();) {
         std::size_t count = 0;
         for (; i < numbers.size() && count < kMost; ++i) {
-            const auto* sky = std::get_if<EnvironmentLight>(&choose(numbers[i]->of_light).entry->light);
+            const auto* sky = std::get_if<EnvironmentLight>(&choose(numbers[i].of_light).entry->light);
             if (sky != nullptr && sky->map.get() == map_) {
-                of_points[count] = numbers[i]->of_point;
-                of_map[count++] = numbers[i];
+                of_points[count] = numbers[i].of_point;
+                of_map[count++] = &numbers[i];
             }
         }
         map_->draw(std::span(of_points).first(count), draws);

@@ -89,7 +89,7 @@ class Lights {
     [[nodiscard]] const Environment* map() const { return map_; }
     /// Draws what these numbers draw for these points, as `sample` would, together: of the map, while memory brings it,
     /// and of a shining surface that is the only light.
-    void draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers* const> numbers) const;
+    void draw_ahead(std::span<const Vec3d> points, std::span<LightNumbers> numbers) const;
 
     /// The same as `emitted` for a ray that leaves the scene: visits what each of the lights at infinity has in that
     /// direction. `ahead`: where the map shows it, if that is known.

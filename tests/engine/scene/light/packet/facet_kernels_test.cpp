@@ -65,13 +65,11 @@ void expect_sample_ahead(const SceneGeometry& scene, std::mt19937_64& random) {
     const ShiningSurface surface(scene, light);
     std::vector<Vec3d> points;
     std::vector<LightNumbers> numbers(100);
-    std::vector<LightNumbers*> places;
     for (LightNumbers& one : numbers) {
         points.push_back(50.0 * random_direction(random));
         one.of_point = {uniform(random, 0.0, 1.0), uniform(random, 0.0, 1.0)};
-        places.push_back(&one);
     }
-    surface.draw_ahead(points, places);
+    surface.draw_ahead(points, numbers);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         ASSERT_TRUE(std::holds_alternative<SurfaceDraw>(numbers[i].ahead));
         const auto ahead = surface.sample(light, points[i], grid.path(0), numbers[i]);
@@ -100,9 +98,9 @@ TEST(FacetKernels, WhatIsRoundIsNotDrawnAhead) {
     const AreaLight light{.object = 0, .radiance = spectral::constant_spectrum(2.0, grid)};
     for (const Shape& shape : {Shape(Sphere{1.0}), Shape(test::icosphere(1.0, 1))}) {
         const SceneGeometry scene = test::scene_of(shape);
-        LightNumbers numbers{.of_point = {0.5, 0.5}};
-        ShiningSurface(scene, light).draw_ahead(std::vector<Vec3d>{{3, 0, 0}}, std::vector<LightNumbers*>{&numbers});
-        EXPECT_TRUE(std::holds_alternative<std::monostate>(numbers.ahead));
+        std::vector<LightNumbers> numbers = {{.of_point = {0.5, 0.5}}};
+        ShiningSurface(scene, light).draw_ahead(std::vector<Vec3d>{{3, 0, 0}}, numbers);
+        EXPECT_TRUE(std::holds_alternative<std::monostate>(numbers.front().ahead));
     }
 }
 
