@@ -24,80 +24,66 @@ struct PathWavelengths {
 };
 
 /// One number for each of a path's wavelengths, in its order. Operators work wavelength by wavelength.
-struct alignas(16) SpectralSample {
-    std::array<float, kWavelengthsPerPath> value{};
+struct SpectralSample {
+    /// A register: as an array they would come back from functions in two halves, to be put together by way of memory.
+    using Numbers [[gnu::vector_size(kWavelengthsPerPath * sizeof(float))]] = float;
+    Numbers value{};
 
     constexpr SpectralSample() = default;
     /// The same for each.
     constexpr explicit SpectralSample(float same) : value{same, same, same, same} {}
-    constexpr explicit SpectralSample(const std::array<float, kWavelengthsPerPath>& values) : value(values) {}
+    constexpr explicit SpectralSample(const std::array<float, kWavelengthsPerPath>& values)
+        : value{values[0], values[1], values[2], values[3]} {}
+    constexpr explicit SpectralSample(const Numbers& values) : value(values) {}
 
-    constexpr float operator[](std::size_t i) const { return value[i]; }
-    constexpr float& operator[](std::size_t i) { return value[i]; }
-    friend bool operator==(const SpectralSample&, const SpectralSample&) = default;
+    float operator[](std::size_t i) const { return value[i]; }
+    friend bool operator==(const SpectralSample& a, const SpectralSample& b) {
+        return a[0] == b[0] && a[1] == b[1] && a[2] == b[2] && a[3] == b[3];
+    }
 
-    constexpr SpectralSample& operator+=(const SpectralSample& b);
-    constexpr SpectralSample& operator-=(const SpectralSample& b);
-    constexpr SpectralSample& operator*=(const SpectralSample& b);
-    constexpr SpectralSample& operator/=(const SpectralSample& b);
-    constexpr SpectralSample& operator*=(float scale);
+    SpectralSample& operator+=(const SpectralSample& b) { return *this = SpectralSample(value + b.value); }
+    SpectralSample& operator-=(const SpectralSample& b) { return *this = SpectralSample(value - b.value); }
+    SpectralSample& operator*=(const SpectralSample& b) { return *this = SpectralSample(value * b.value); }
+    SpectralSample& operator/=(const SpectralSample& b) { return *this = SpectralSample(value / b.value); }
+    SpectralSample& operator*=(float scale) { return *this = SpectralSample(scale * value); }
 };
+
+inline SpectralSample operator+(SpectralSample a, const SpectralSample& b) {
+    return a += b;
+}
+inline SpectralSample operator-(SpectralSample a, const SpectralSample& b) {
+    return a -= b;
+}
+inline SpectralSample operator*(SpectralSample a, const SpectralSample& b) {
+    return a *= b;
+}
+inline SpectralSample operator/(SpectralSample a, const SpectralSample& b) {
+    return a /= b;
+}
+inline SpectralSample operator*(float scale, SpectralSample a) {
+    return a *= scale;
+}
 
 /// `function` of each wavelength's numbers.
 template <class Function, class... Samples>
-constexpr SpectralSample for_each_wavelength(const Function& function, const Samples&... samples) {
-    SpectralSample result;
-    for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
-        result.value[i] = function(samples.value[i]...);
-    }
-    return result;
+SpectralSample for_each_wavelength(const Function& function, const Samples&... samples) {
+    return SpectralSample(SpectralSample::Numbers{function(samples[0]...), function(samples[1]...),
+                                                  function(samples[2]...), function(samples[3]...)});
 }
 
-constexpr SpectralSample operator+(const SpectralSample& a, const SpectralSample& b) {
-    return for_each_wavelength([](float x, float y) { return x + y; }, a, b);
-}
-constexpr SpectralSample operator-(const SpectralSample& a, const SpectralSample& b) {
-    return for_each_wavelength([](float x, float y) { return x - y; }, a, b);
-}
-constexpr SpectralSample operator*(const SpectralSample& a, const SpectralSample& b) {
-    return for_each_wavelength([](float x, float y) { return x * y; }, a, b);
-}
-constexpr SpectralSample operator/(const SpectralSample& a, const SpectralSample& b) {
-    return for_each_wavelength([](float x, float y) { return x / y; }, a, b);
-}
-constexpr SpectralSample operator*(float scale, const SpectralSample& a) {
-    return for_each_wavelength([scale](float x) { return scale * x; }, a);
-}
-
-constexpr SpectralSample& SpectralSample::operator+=(const SpectralSample& b) {
-    return *this = *this + b;
-}
-constexpr SpectralSample& SpectralSample::operator-=(const SpectralSample& b) {
-    return *this = *this - b;
-}
-constexpr SpectralSample& SpectralSample::operator*=(const SpectralSample& b) {
-    return *this = *this * b;
-}
-constexpr SpectralSample& SpectralSample::operator/=(const SpectralSample& b) {
-    return *this = *this / b;
-}
-constexpr SpectralSample& SpectralSample::operator*=(float scale) {
-    return *this = scale * *this;
-}
-
-constexpr float max_value(const SpectralSample& a) {
-    return std::max(std::max(a.value[0], a.value[1]), std::max(a.value[2], a.value[3]));
+inline float max_value(const SpectralSample& a) {
+    return std::max(std::max(a[0], a[1]), std::max(a[2], a[3]));
 }
 /// Of four equal numbers it is that number to the last bit, as for every sum of two equal floats.
-constexpr float mean(const SpectralSample& a) {
-    return 0.25F * ((a.value[0] + a.value[1]) + (a.value[2] + a.value[3]));
+inline float mean(const SpectralSample& a) {
+    return 0.25F * ((a[0] + a[1]) + (a[2] + a[3]));
 }
-constexpr bool is_black(const SpectralSample& a) {
-    return a.value[0] == 0.0F && a.value[1] == 0.0F && a.value[2] == 0.0F && a.value[3] == 0.0F;
+inline bool is_black(const SpectralSample& a) {
+    return a[0] == 0.0F && a[1] == 0.0F && a[2] == 0.0F && a[3] == 0.0F;
 }
 /// The hero's number, and 0 for the others: for light whose path the hero alone can take.
-constexpr SpectralSample hero_alone(const SpectralSample& a) {
-    return SpectralSample({a.value[0], 0.0F, 0.0F, 0.0F});
+inline SpectralSample hero_alone(const SpectralSample& a) {
+    return SpectralSample({a[0], 0.0F, 0.0F, 0.0F});
 }
 
 /// The strata of a render; `strata.count` is a multiple of kWavelengthsPerPath.

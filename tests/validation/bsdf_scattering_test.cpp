@@ -228,7 +228,8 @@ TEST(RoughSurfaces, StayFiniteAtGrazing) {
                                                  scene::Transport::radiance);
                 if (drawn) {
                     EXPECT_TRUE(std::isfinite(drawn->pdf) && drawn->pdf > 0.0) << alpha << " " << mu;
-                    for (const float weight : drawn->weight.value) {
+                    for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
+                        const float weight = drawn->weight[m];
                         EXPECT_TRUE(weight >= 0.0F && weight <= 4.0F * 1.8F * 1.8F * 1.01F) << weight << " " << alpha;
                     }
                 }

@@ -1,5 +1,6 @@
 #include "engine/scene/bsdf/conductor.h"
 
+#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 
 #include "engine/scene/bsdf/directions.h"
@@ -42,12 +43,12 @@ bool is_possible(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
 spectral::SpectralSample mean_conductor_reflectance(const spectral::SpectralSample& n,
                                                     const spectral::SpectralSample& k) {
     using Gauss = boost::math::quadrature::gauss<double, 20>;
-    spectral::SpectralSample mean;
-    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
+    std::array<float, spectral::kWavelengthsPerPath> mean{};
+    for (std::size_t i = 0; i < mean.size(); ++i) {
         const auto integrand = [&](double mu) { return 2.0 * mu * conductor_reflectance(n, k, mu)[i]; };
         mean[i] = static_cast<float>(Gauss::integrate(integrand, 0.0, 1.0));
     }
-    return mean;
+    return spectral::SpectralSample(mean);
 }
 
 spectral::SpectralSample evaluate(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {

@@ -1,5 +1,7 @@
 #include "engine/scene/bsdf/dielectric.h"
 
+#include <array>
+
 #include "engine/scene/bsdf/directions.h"
 #include "engine/scene/bsdf/fresnel.h"
 
@@ -26,11 +28,11 @@ double eta_behind(const DielectricBsdf& bsdf, const Vec3d& wo, std::size_t wavel
 template <class Function>
 spectral::SpectralSample for_each_index(const DielectricBsdf& bsdf, const Vec3d& wo, const Function& function) {
     const std::size_t count = distinct_indices(bsdf);
-    spectral::SpectralSample result;
+    std::array<float, spectral::kWavelengthsPerPath> result{};
     for (std::size_t i = 0; i < count; ++i) {
         result[i] = static_cast<float>(function(eta_behind(bsdf, wo, i)));
     }
-    return count == 1 ? spectral::SpectralSample(result[0]) : result;
+    return count == 1 ? spectral::SpectralSample(result[0]) : spectral::SpectralSample(result);
 }
 
 /// The mean of `function` over the wavelengths' indices.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 
@@ -77,10 +78,11 @@ TEST(Fresnel, ReflectsTotallyBeyondTheCriticalAngle) {
 // Snell: n sin i is the same on both sides, and the ray stays in its plane, for whichever wavelength is the hero; the
 // others stay behind. Into the glass and out of it. Rounding of a unit vector's sine, whatever the float index.
 TEST(Dielectric, EachHeroFollowsSnellAlone) {
-    const spectral::SpectralSample indices({1.51F, 1.52F, 1.535F, 1.56F});
-    for (std::size_t hero = 0; hero < spectral::kWavelengthsPerPath; ++hero) {
-        DielectricBsdf glass{.eta = indices};
-        std::swap(glass.eta[0], glass.eta[hero]);
+    const std::array<float, spectral::kWavelengthsPerPath> indices{1.51F, 1.52F, 1.535F, 1.56F};
+    for (std::size_t hero = 0; hero < indices.size(); ++hero) {
+        auto of_hero = indices;
+        std::swap(of_hero[0], of_hero[hero]);
+        const DielectricBsdf glass{.eta = spectral::SpectralSample(of_hero)};
         for (const double mu : {0.99, 0.7, 0.2, -0.95, -0.8}) {
             const Vec3d wo = direction(mu, 0.4);
             const auto drawn = sample(Bsdf(glass), wo, bsdf_numbers(0.999, 0.5, 0.5), kRadiance);
