@@ -184,11 +184,14 @@ class PathWalk {
         const double to_light =
             light->pdf > 0.0 ? scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
         const double weight = weight_.of_sample(*light, weighed(vertex, light->direction, wi, to_light));
-        sampled.segments.push_back({scene::ray_origin(vertex.hit, light->direction), light->end});
-        sampled.lights.push_back({.path = this,
-                                  .light = static_cast<float>(weight) * (throughput_ * scattering * light->value),
-                                  .place = light->place,
-                                  .is_hero_alone = is_hero_alone_});
+        scene::Segment& segment = sampled.segments.emplace_back();
+        segment.from = scene::ray_origin(vertex.hit, light->direction);
+        segment.to = light->end;
+        SampledLight& added = sampled.lights.emplace_back();
+        added.path = this;
+        added.light = static_cast<float>(weight) * (throughput_ * scattering * light->value);
+        added.place = light->place;
+        added.is_hero_alone = is_hero_alone_;
     }
 
     void note_first(const PathVertex& vertex) {

@@ -331,7 +331,8 @@ void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
     };
     const auto describe_first = [&](std::size_t i, const Columns& columns, std::size_t j) {
         hits[i].reset();
-        if (!is_usable(rays[i].origin, rays[i].direction)) {
+        const Stretch<double> ray = columns.rays[j];
+        if (!is_usable(ray.origin, ray.direction)) {
             return;
         }
         Nearest nearest;
@@ -340,10 +341,10 @@ void intersect(const SceneGeometry& scene, std::span<const Ray<double>> rays,
         }
         offer_triangle(nearest, data, columns.triangles.first(j));
         if (data.has_embree_geometry) {
-            ask_embree(data, stretch(i), nearest);
+            ask_embree(data, ray, nearest);
         }
         if (nearest.is_one()) {
-            describe(data, stretch(i), nearest, hits[i].emplace());
+            describe(data, ray, nearest, hits[i].emplace());
         }
     };
     meet_in_columns(data, analytic_kernels().first, rays.size(), stretch, describe_first);
@@ -364,12 +365,9 @@ bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to)
 void find_occluded(const SceneGeometry& scene, std::span<const Segment> segments,
                    std::span<std::uint8_t> are_occluded) {
     const SceneGeometry::Data& data = scene.data();
-    std::array<Stretch<double>, RayColumns::kMost> stretches;
-    const auto stretch = [&](std::size_t i) {
-        return stretches[i % stretches.size()] = stretch_between(scene, segments[i].from, segments[i].to);
-    };
+    const auto stretch = [&](std::size_t i) { return stretch_between(scene, segments[i].from, segments[i].to); };
     const auto judge = [&](std::size_t i, const Columns& columns, std::size_t j) {
-        const Stretch<double>& ray = stretches[i % stretches.size()];
+        const Stretch<double> ray = columns.rays[j];
         const bool is_blocked =
             is_usable(ray.origin, ray.direction) && (columns.objects.is_any(j) || columns.triangles.is_any(j) ||
                                                      (data.has_embree_geometry && embree_finds_any(data, ray)));

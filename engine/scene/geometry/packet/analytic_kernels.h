@@ -21,7 +21,22 @@ struct alignas(64) RayColumns {
     std::size_t size = 0;
 
     /// The i-th ray.
-    void set(std::size_t i, const Stretch<double>& ray);
+    void set(std::size_t i, const Stretch<double>& ray) {
+        origin[0][i] = ray.origin.x;
+        origin[1][i] = ray.origin.y;
+        origin[2][i] = ray.origin.z;
+        direction[0][i] = ray.direction.x;
+        direction[1][i] = ray.direction.y;
+        direction[2][i] = ray.direction.z;
+        from[i] = ray.from;
+        to[i] = ray.to;
+    }
+    Stretch<double> operator[](std::size_t i) const {
+        return {.origin = {origin[0][i], origin[1][i], origin[2][i]},
+                .direction = {direction[0][i], direction[1][i], direction[2][i]},
+                .from = from[i],
+                .to = to[i]};
+    }
 };
 
 /// The first of a list on a ray.
