@@ -229,7 +229,7 @@ class ArrivalNumbers {
             }
         }
         columns_.size = 0;
-        columns_.with_matt = static_cast<int>(count);
+        columns_.for_surfaces = static_cast<int>(count);
         for (const std::uint64_t sets : {1, 2}) {
             for (std::size_t k = 0; k < count; ++k) {
                 columns_.add(*samplers[k], sets);

@@ -119,19 +119,6 @@ inline constexpr DigitPoints kDigitPoints = make_digit_points();
     return x;
 }
 
-/// The points of the samples of one bit.
-constexpr DirectionNumbers make_reversed_directions() {
-    DirectionNumbers reversed{};
-    for (int bit = 0; bit < 32; ++bit) {
-        for (int d = 0; d < kDimensions; ++d) {
-            reversed[d][bit] = reversed_bits(kDirections[d][bit]);
-        }
-    }
-    return reversed;
-}
-
-inline constexpr DirectionNumbers kReversedDirections = make_reversed_directions();
-
 /// The first points, a column a dimension.
 inline constexpr std::uint32_t kBlock = 256;
 using PointBlock = std::array<std::array<std::uint32_t, kBlock>, kDimensions>;

@@ -6,6 +6,7 @@
 #pragma once
 #include "engine/base/pack.h"
 #include "engine/render/sampling/packet/number_kernels.h"
+#include "engine/render/sampling/packet/sobol_packet.h"
 
 namespace lensproof::render {
 
@@ -17,35 +18,29 @@ template <class Abi, class NumberAbi>
     constexpr int kMost = NumberColumns::kMost;
     constexpr int kDimensions = NumberColumns::kNumbers;
     constexpr int kStep = 16;
-    const int end = (columns.size + kStep - 1) / kStep * kStep;  // whole packets
+    const auto whole_packets = [](int size) { return (size + kStep - 1) / kStep * kStep; };
+    const int end = whole_packets(columns.size);
     alignas(64) std::uint64_t stream[kMost];
-    alignas(64) std::uint32_t index[kMost];
+    alignas(64) std::uint32_t point[kDimensions][kMost];
     for (int i = 0; i < end; ++i) {
         const std::uint64_t own = PathSampler::own_seed(columns.seed[i], columns.set[i]);
         stream[i] = PixelSampler::stream(own, columns.pixel[i]);
-        index[i] = PathSampler::shuffled(columns.sample[i], PathSampler::shuffle(own, columns.pixel[i]));
+        point[0][i] = PathSampler::shuffled(columns.sample[i], PathSampler::shuffle(own, columns.pixel[i]));
     }
-    alignas(64) std::uint32_t point[kDimensions][kMost];
     for (int i = 0; i < end; i += static_cast<int>(Words::size())) {
-        const Words bits(index + i, kAligned);
-        Words of[kDimensions] = {};
-        for (int bit = 0; bit < 32; ++bit) {
-            const Words mask = Words(0U) - ((bits >> bit) & Words(1U));
-            for (int d = 0; d < kDimensions; ++d) {
-                of[d] ^= mask & Words(sampler_detail::kReversedDirections[d][bit]);
-            }
-        }
-        for (int d = 0; d < kDimensions; ++d) {
-            of[d].copy_to(point[d] + i, kAligned);
+        const Words samples(point[0] + i, kAligned);  // of which these are the points in the first dimension
+        for (int d = 1; d < kDimensions; ++d) {
+            sobol::points(samples, d).copy_to(point[d] + i, kAligned);
         }
     }
     for (int d = 0; d < kDimensions; ++d) {
-        for (int i = 0; i < end; ++i) {
+        const int last = d < NumberColumns::kForLights ? end : whole_packets(columns.for_surfaces);
+        for (int i = 0; i < last; ++i) {
             columns.number[d][i] = sampler_detail::scrambled_number(point[d][i], PixelSampler::scramble(stream[i], d));
         }
     }
     using Numbers = Pack<double, NumberAbi>;
-    for (int i = 0; i < columns.with_matt; i += Numbers::kLanes) {
+    for (int i = 0; i < columns.for_surfaces; i += Numbers::kLanes) {
         const Vec3<Numbers> matt =
             cosine_direction(Numbers::load(columns.number[1].data() + i), Numbers::load(columns.number[2].data() + i));
         matt.x.store(columns.matt[0].data() + i);

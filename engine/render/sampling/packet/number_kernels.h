@@ -10,10 +10,12 @@
 
 namespace lensproof::render {
 
-/// Of samplers side by side what each says next, a column a number, of which paths take these at a surface.
+/// Of samplers side by side what each says next, a column a number, of which paths take these at a surface: the first
+/// ones for scattering there, the others for a light.
 struct alignas(64) NumberColumns {
     static constexpr int kMost = 64;
     static constexpr int kNumbers = 4;
+    static constexpr int kForLights = 3;  // of these
     static_assert(kNumbers <= PathSampler::kNumbers);
     template <class Number>
     using Column = std::array<Number, kMost>;
@@ -23,9 +25,9 @@ struct alignas(64) NumberColumns {
     Column<std::uint32_t> pixel{};
     Column<std::uint32_t> sample{};
     std::array<Column<double>, kNumbers> number;
-    std::array<Column<double>, 3> matt;  // cosine_direction of the second and third
+    std::array<Column<double>, 3> matt;  // cosine_direction of the second and third, for scattering
     int size = 0;
-    int with_matt = 0;  // of so many, the first ones
+    int for_surfaces = 0;  // so many, the first ones, are for scattering
 
     /// Adds what `sampler` says when it has been asked `sets` times more.
     void add(const PathSampler& sampler, std::uint64_t sets);

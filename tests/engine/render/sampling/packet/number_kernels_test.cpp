@@ -13,7 +13,7 @@ TEST(NumberKernels, EveryLevelSaysWhatTheSamplersSay) {
     for (int size = 0; size <= NumberColumns::kMost; ++size) {
         std::vector<PathSampler> samplers;
         NumberColumns columns;
-        columns.with_matt = size / 2;
+        columns.for_surfaces = size / 2;
         for (int i = 0; i < size; ++i) {
             PathSampler sampler(random(), static_cast<std::uint32_t>(random()), static_cast<std::uint32_t>(random()));
             sampler.skip(static_cast<std::uint64_t>(i));
@@ -26,10 +26,12 @@ TEST(NumberKernels, EveryLevelSaysWhatTheSamplersSay) {
             number_kernels(level).draw(found);
             for (std::size_t i = 0; i < samplers.size(); ++i) {
                 const auto expected = samplers[i].peek();
-                for (std::size_t k = 0; k < NumberColumns::kNumbers; ++k) {
+                const bool is_for_surface = static_cast<int>(i) < found.for_surfaces;
+                const int numbers = is_for_surface ? NumberColumns::kNumbers : NumberColumns::kForLights;
+                for (std::size_t k = 0; k < static_cast<std::size_t>(numbers); ++k) {
                     EXPECT_EQ(found.number[k][i], expected[k]) << simd_name(level);
                 }
-                if (static_cast<int>(i) < found.with_matt) {
+                if (is_for_surface) {
                     EXPECT_EQ(found.matt_direction(i), cosine_direction(expected[1], expected[2])) << simd_name(level);
                 }
             }
