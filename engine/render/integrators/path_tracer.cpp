@@ -43,20 +43,25 @@ struct SurfaceNumbers {
 /// A path on its way, between one question to the scene's geometry and the next.
 class PathWalk {
   public:
-    /// `result` is what the path brings.
-    PathWalk(const scene::Scene& scene, const PathSettings& settings, PathStart& start, PathRadiance& result)
-        : scene_(&scene), settings_(&settings), start_(&start), result_(&result) {
-        result = {};
+    /// `result` is what the path brings, once it has ended.
+    PathWalk(const scene::Scene& scene, const PathSettings& settings, const PathStart& start, PathRadiance& result)
+        : scene_(&scene),
+          settings_(&settings),
+          start_(&start),
+          result_(&result),
+          path_(start.path),
+          sampler_(start.numbers) {
+        result.first.reset();
     }
 
-    [[nodiscard]] PathSampler& sampler() { return start_->numbers; }
+    [[nodiscard]] PathSampler& sampler() { return sampler_; }
 
     /// The ray has left the scene, and a map shows its direction there.
     void leave_scene(const Ray<double>& ray, const scene::MapPlace& place) {
         end_ray({-1.0 * ray.direction, true});
         if (counts() || settings_->takes_sky_by_camera) {
             scene_->lights.visit_infinity(
-                ray.direction, start_->path,
+                ray.direction, path_,
                 [&](scene::Lights::Emission light) {
                     if (light.is_sun && bounce_ == 0 && settings_->leaves_suns_out) {
                         return;
@@ -73,16 +78,16 @@ class PathWalk {
     bool arrive(const Ray<double>& ray, const scene::SurfaceHit& hit, const SurfaceNumbers& numbers,
                 SampledLights& sampled, Ray<double>& next) {
         end_ray({hit.point, false});
-        throughput_ *= body_transmittance(*scene_, hit, ray.direction, start_->path);
+        throughput_ *= body_transmittance(*scene_, hit, ray.direction, path_);
         if (counts()) {
-            add_found(scene_->lights.emitted(hit, from_, ray.direction, start_->path),
+            add_found(scene_->lights.emitted(hit, from_, ray.direction, path_),
                       std::abs(dot(hit.geometric_normal, ray.direction)));
         }
         if (bounce_ == settings_->max_bounces && bounce_ > 0) {
             return false;
         }
         const Vec3d backwards = -1.0 * ray.direction;
-        const PathVertex vertex(hit, backwards, *scene_, start_->path);
+        const PathVertex vertex(hit, backwards, *scene_, path_);
         if (bounce_ == 0 && start_->wants_first) {
             note_first(vertex);
         }
@@ -90,7 +95,7 @@ class PathWalk {
             return false;
         }
         if (!scene::is_delta(vertex.bsdf)) {
-            start_->numbers.skip();
+            sampler_.skip();
             if (!is_mirror_wanted()) {
                 sample_light(vertex, *numbers.light, sampled);
             }
@@ -99,7 +104,14 @@ class PathWalk {
     }
 
     void see(const SampledLight& sampled) {
-        add(scene::light_of(sampled.light, sampled.place, start_->path), sampled.is_hero_alone);
+        add(scene::light_of(sampled.light, sampled.place, path_), sampled.is_hero_alone);
+    }
+
+    /// All that it samples is seen.
+    void end() const {
+        result_->radiance = radiance_;
+        result_->hero_radiance = hero_radiance_;
+        result_->rays = rays_;
     }
 
   private:
@@ -107,10 +119,10 @@ class PathWalk {
     [[nodiscard]] bool counts() const { return bounce_ >= settings_->min_bounces; }
 
     void end_ray(const LightOrigin& end) {
-        ++result_->rays;
+        ++rays_;
         if (bounce_ == 0 && start_->drawn != nullptr) {
             const CameraRay& drawn = *start_->drawn;
-            weight_.enter(drawn.camera->entrance_ratio(drawn.camera->pdf(end, drawn.ray, start_->path), drawn.pdf));
+            weight_.enter(drawn.camera->entrance_ratio(drawn.camera->pdf(end, drawn.ray, path_), drawn.pdf));
         }
     }
 
@@ -141,9 +153,9 @@ class PathWalk {
 
     void add(const spectral::SpectralSample& light, bool is_hero_alone) {
         if (is_hero_alone) {
-            result_->hero_radiance += light[0];
+            hero_radiance_ += light[0];
         } else {
-            result_->radiance += light;
+            radiance_ += light;
         }
     }
 
@@ -168,9 +180,8 @@ class PathWalk {
     }
 
     void sample_light(const PathVertex& vertex, const scene::LightNumbers& numbers, SampledLights& sampled) {
-        const auto light = scene_->lights.sample(vertex.hit.point, start_->path, numbers, [&](const Vec3d& direction) {
-            return vertex.scattering(direction)[0];
-        });
+        const auto light = scene_->lights.sample(
+            vertex.hit.point, path_, numbers, [&](const Vec3d& direction) { return vertex.scattering(direction)[0]; });
         if (!light) {
             return;
         }
@@ -179,7 +190,7 @@ class PathWalk {
             return;
         }
         scene::fetch(light->place);
-        ++result_->rays;
+        ++rays_;
         const Vec3d wi = vertex.frame.to_local(light->direction);
         const double to_light =
             light->pdf > 0.0 ? scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
@@ -203,13 +214,18 @@ class PathWalk {
 
     const scene::Scene* scene_;
     const PathSettings* settings_;
-    PathStart* start_;
+    const PathStart* start_;
+    PathRadiance* result_;
+    spectral::PathWavelengths path_;
+    PathSampler sampler_;
     Vec3d from_;  // the surface point that the ray left
     int bounce_ = 0;
     bool is_hero_alone_ = false;
     spectral::SpectralSample throughput_{1.0F};
     CameraMisWeight weight_;
-    PathRadiance* result_;
+    spectral::SpectralSample radiance_;  // as PathRadiance has them
+    float hero_radiance_ = 0.0F;
+    std::uint32_t rays_ = 0;
 };
 
 /// The numbers of some paths, of those that have met something, drawn together.
@@ -281,7 +297,7 @@ void find_in(const scene::Environment& map, std::span<const Ray<double>> rays,
 
 }  // namespace
 
-void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::span<PathStart> starts,
+void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::span<const PathStart> starts,
                  std::span<PathRadiance> found) {
     // On their way at a time: enough for whole packets and for memory to be asked ahead, few enough for the caches.
     constexpr std::size_t kTogether = 128;
@@ -334,16 +350,19 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
                 sampled.lights[i].path->see(sampled.lights[i]);
             }
         }
-        for (std::size_t i = 0; i < ended.size() && begun < starts.size(); ++i, ++begun) {
-            going.push_back(std::construct_at(ended[i], scene, settings, starts[begun], found[begun]));
-            rays.push_back(starts[begun].ray);
+        for (PathWalk* walk : ended) {
+            walk->end();
+            if (begun < starts.size()) {
+                going.push_back(std::construct_at(walk, scene, settings, starts[begun], found[begun]));
+                rays.push_back(starts[begun++].ray);
+            }
         }
     }
 }
 
 PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const spectral::PathWavelengths& path,
                         const PathSettings& settings, PathSampler& numbers) {
-    PathStart start{.ray = ray, .path = path, .numbers = numbers};
+    const PathStart start{.ray = ray, .path = path, .numbers = numbers};
     PathRadiance found;
     PathWalk walk(scene, settings, start, found);
     Ray<double> next = ray;
@@ -367,7 +386,8 @@ PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const
         }
         sampled.clear();
     }
-    numbers = start.numbers;
+    walk.end();
+    numbers = walk.sampler();
     return found;
 }
 

@@ -57,7 +57,7 @@ struct PathStart {
 /// Each surface point adds what lights send there directly, found by sampling lights and by following the BSDF, weighed
 /// by the power heuristic (Veach & Guibas, SIGGRAPH 1995). Where refraction parts the wavelengths the hero goes on
 /// alone (Wilkie et al. 2014, §3.2).
-void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::span<PathStart> starts,
+void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::span<const PathStart> starts,
                  std::span<PathRadiance> found);
 
 /// The same of one path that nothing is added to.
