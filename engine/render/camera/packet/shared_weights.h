@@ -40,9 +40,9 @@ constexpr SharedWeights<T, wavelengths> shared_weights(const std::array<FilmArri
         shared.shared_pdf = shared.shared_pdf + select(is_in_pixel, fraction * arrivals[i].pdf, T(0));
     }
     const auto is_drawn = shared.shared_pdf > T(0);
-    const T divisor = select(is_drawn, shared.shared_pdf, T(1));
+    const T per_pdf = select(is_drawn, T(1) / select(is_drawn, shared.shared_pdf, T(1)), T(0));
     for (T& weight : shared.weight) {
-        weight = select(is_drawn, weight / divisor, T(0));
+        weight = weight * per_pdf;
     }
     return shared;
 }
