@@ -231,39 +231,31 @@ class PathWalk {
 /// The numbers of some paths, of those that have met something, drawn together.
 class ArrivalNumbers {
   public:
-    static constexpr std::size_t kMost = NumberColumns::kMost / 2;
+    static constexpr std::size_t kMost = NumberColumns::kMost;
 
     void draw(const scene::Lights& lights, std::span<PathWalk* const> walks,
               std::span<const std::optional<scene::SurfaceHit>> hits) {
         std::array<Vec3d, kMost> points;
-        std::array<PathSampler*, kMost> samplers{};
         std::size_t count = 0;
+        columns_.size = 0;
         for (std::size_t i = 0; i < walks.size(); ++i) {
             if (hits[i]) {
-                points[count] = hits[i]->point;
-                samplers[count++] = &walks[i]->sampler();
-            }
-        }
-        columns_.size = 0;
-        columns_.for_surfaces = static_cast<int>(count);
-        for (const std::uint64_t sets : {1, 2}) {
-            for (std::size_t k = 0; k < count; ++k) {
-                columns_.add(*samplers[k], sets);
+                points[count++] = hits[i]->point;
+                columns_.add(walks[i]->sampler());
+                walks[i]->sampler().skip();
             }
         }
         number_kernels().draw(columns_);
         for (std::size_t k = 0; k < count; ++k) {
-            samplers[k]->skip();
-            const std::size_t after = count + k;
-            const auto& u = columns_.number;
-            light_[k] = {.of_light = u[0][after], .of_point = {u[1][after], u[2][after]}};
+            const auto& u = columns_.after;
+            light_[k] = {.of_light = u[0][k], .of_point = {u[1][k], u[2][k]}};
         }
         lights.draw_ahead(std::span(points).first(count), std::span(light_).first(count));
     }
 
     /// Of the k-th that has met something.
     [[nodiscard]] SurfaceNumbers operator[](std::size_t k) const {
-        const auto& u = columns_.number;
+        const auto& u = columns_.next;
         return {
             .bsdf = {u[0][k], u[1][k], u[2][k], columns_.matt_direction(k)}, .roulette = u[3][k], .light = &light_[k]};
     }

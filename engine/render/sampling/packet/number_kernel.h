@@ -10,39 +10,42 @@
 
 namespace lensproof::render {
 
-/// As PathSampler says them, in loops over all that wait for no look-up.
-template <class Abi, class NumberAbi>
-[[gnu::flatten]] void draw_numbers(NumberColumns& columns) {
+/// The first numbers of the set that a sampler says when it has been asked `sets` times, as PathSampler does, in loops
+/// over all that wait for no look-up.
+template <class Abi, std::size_t numbers>
+void draw_set(const NumberColumns& columns, std::uint64_t sets, NumberColumns::Set<numbers>& set) {
     using Words = std::experimental::simd<std::uint32_t, Abi>;
     constexpr std::experimental::vector_aligned_tag kAligned;
-    constexpr int kMost = NumberColumns::kMost;
-    constexpr int kDimensions = NumberColumns::kNumbers;
     constexpr int kStep = 16;
-    const auto whole_packets = [](int size) { return (size + kStep - 1) / kStep * kStep; };
-    const int end = whole_packets(columns.size);
-    alignas(64) std::uint64_t stream[kMost];
-    alignas(64) std::uint32_t point[kDimensions][kMost];
+    const int end = (columns.size + kStep - 1) / kStep * kStep;  // whole packets
+    alignas(64) std::uint64_t stream[NumberColumns::kMost];
+    alignas(64) std::uint32_t point[numbers][NumberColumns::kMost];
     for (int i = 0; i < end; ++i) {
-        const std::uint64_t own = PathSampler::own_seed(columns.seed[i], columns.set[i]);
+        const std::uint64_t own = PathSampler::own_seed(columns.seed[i], columns.set[i] + sets);
         stream[i] = PixelSampler::stream(own, columns.pixel[i]);
         point[0][i] = PathSampler::shuffled(columns.sample[i], PathSampler::shuffle(own, columns.pixel[i]));
     }
     for (int i = 0; i < end; i += static_cast<int>(Words::size())) {
         const Words samples(point[0] + i, kAligned);  // of which these are the points in the first dimension
-        for (int d = 1; d < kDimensions; ++d) {
+        for (int d = 1; d < static_cast<int>(numbers); ++d) {
             sobol::points(samples, d).copy_to(point[d] + i, kAligned);
         }
     }
-    for (int d = 0; d < kDimensions; ++d) {
-        const int last = d < NumberColumns::kForLights ? end : whole_packets(columns.for_surfaces);
-        for (int i = 0; i < last; ++i) {
-            columns.number[d][i] = sampler_detail::scrambled_number(point[d][i], PixelSampler::scramble(stream[i], d));
+    for (int d = 0; d < static_cast<int>(numbers); ++d) {
+        for (int i = 0; i < end; ++i) {
+            set[d][i] = sampler_detail::scrambled_number(point[d][i], PixelSampler::scramble(stream[i], d));
         }
     }
+}
+
+template <class Abi, class NumberAbi>
+[[gnu::flatten]] void draw_numbers(NumberColumns& columns) {
+    draw_set<Abi>(columns, 1, columns.next);
+    draw_set<Abi>(columns, 2, columns.after);
     using Numbers = Pack<double, NumberAbi>;
-    for (int i = 0; i < columns.for_surfaces; i += Numbers::kLanes) {
+    for (int i = 0; i < columns.size; i += Numbers::kLanes) {
         const Vec3<Numbers> matt =
-            cosine_direction(Numbers::load(columns.number[1].data() + i), Numbers::load(columns.number[2].data() + i));
+            cosine_direction(Numbers::load(columns.next[1].data() + i), Numbers::load(columns.next[2].data() + i));
         matt.x.store(columns.matt[0].data() + i);
         matt.y.store(columns.matt[1].data() + i);
         matt.z.store(columns.matt[2].data() + i);

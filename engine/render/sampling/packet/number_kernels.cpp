@@ -2,11 +2,11 @@
 
 namespace lensproof::render {
 
-void NumberColumns::add(const PathSampler& sampler, std::uint64_t sets) {
+void NumberColumns::add(const PathSampler& sampler) {
     const auto i = static_cast<std::size_t>(size++);
     const PathSampler::Place place = sampler.place();
     seed[i] = place.seed;
-    set[i] = place.set + sets;
+    set[i] = place.set;
     pixel[i] = place.pixel;
     sample[i] = place.sample;
 }

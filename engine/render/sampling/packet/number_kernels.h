@@ -10,27 +10,24 @@
 
 namespace lensproof::render {
 
-/// Of samplers side by side what each says next, a column a number, of which paths take these at a surface: the first
-/// ones for scattering there, the others for a light.
+/// Of samplers side by side what each says next, a column a number: as many as a path takes at a surface.
 struct alignas(64) NumberColumns {
-    static constexpr int kMost = 64;
-    static constexpr int kNumbers = 4;
-    static constexpr int kForLights = 3;  // of these
-    static_assert(kNumbers <= PathSampler::kNumbers);
+    static constexpr int kMost = 32;
     template <class Number>
     using Column = std::array<Number, kMost>;
+    template <std::size_t numbers>
+    using Set = std::array<Column<double>, numbers>;
 
     Column<std::uint64_t> seed{};
     Column<std::uint64_t> set{};
     Column<std::uint32_t> pixel{};
     Column<std::uint32_t> sample{};
-    std::array<Column<double>, kNumbers> number;
-    std::array<Column<double>, 3> matt;  // cosine_direction of the second and third, for scattering
+    Set<4> next;   // set of each sampler
+    Set<3> matt;   // cosine_direction of its second and third number
+    Set<3> after;  // it
     int size = 0;
-    int for_surfaces = 0;  // so many, the first ones, are for scattering
 
-    /// Adds what `sampler` says when it has been asked `sets` times more.
-    void add(const PathSampler& sampler, std::uint64_t sets);
+    void add(const PathSampler& sampler);
     [[nodiscard]] Vec3d matt_direction(std::size_t i) const { return {matt[0][i], matt[1][i], matt[2][i]}; }
 };
 
