@@ -27,6 +27,10 @@ struct SampledLights {
     std::vector<SampledLight> lights;
     std::vector<scene::Segment> segments;  // as many
 
+    void reserve(std::size_t most) {
+        lights.reserve(most);
+        segments.reserve(most);
+    }
     void clear() {
         lights.clear();
         segments.clear();
@@ -306,10 +310,12 @@ void trace_paths(const scene::Scene& scene, const PathSettings& settings, std::s
         rays.push_back(starts[begun].ray);
     }
     std::vector<PathWalk*> ended;
+    ended.reserve(together);
     std::vector<std::optional<scene::SurfaceHit>> hits(together);
     std::vector<scene::MapPlace> places(together);
     ArrivalNumbers numbers;
     SampledLights sampled;
+    sampled.reserve(together);
     std::vector<std::uint8_t> are_blocked(together);
     while (!going.empty()) {
         scene::intersect(*scene.geometry, rays, hits);
