@@ -10,10 +10,10 @@
 
 namespace lensproof::render {
 
-/// The first numbers of the set that a sampler says when it has been asked `sets` times, as PathSampler does, in loops
-/// over all that wait for no look-up.
+/// The first numbers of the set that each sampler says as the n-th from now on, in loops over all that wait for no
+/// look-up.
 template <class Abi, std::size_t numbers>
-void draw_set(const NumberColumns& columns, std::uint64_t sets, NumberColumns::Set<numbers>& set) {
+void draw_set(const NumberColumns& columns, std::uint64_t n, NumberColumns::Set<numbers>& set) {
     using Words = std::experimental::simd<std::uint32_t, Abi>;
     constexpr std::experimental::vector_aligned_tag kAligned;
     constexpr int kStep = 16;
@@ -21,7 +21,7 @@ void draw_set(const NumberColumns& columns, std::uint64_t sets, NumberColumns::S
     alignas(64) std::uint64_t stream[NumberColumns::kMost];
     alignas(64) std::uint32_t point[numbers][NumberColumns::kMost];
     for (int i = 0; i < end; ++i) {
-        const std::uint64_t own = PathSampler::own_seed(columns.seed[i], columns.set[i] + sets);
+        const std::uint64_t own = PathSampler::own_seed(columns.seed[i], columns.set[i] + n);
         stream[i] = PixelSampler::stream(own, columns.pixel[i]);
         point[0][i] = PathSampler::shuffled(columns.sample[i], PathSampler::shuffle(own, columns.pixel[i]));
     }

@@ -22,9 +22,9 @@ struct alignas(64) NumberColumns {
     Column<std::uint64_t> set{};
     Column<std::uint32_t> pixel{};
     Column<std::uint32_t> sample{};
-    Set<4> next;   // set of each sampler
+    Set<4> next;   // of each sampler's next set, for scattering
     Set<3> matt;   // cosine_direction of its second and third number
-    Set<3> after;  // it
+    Set<3> after;  // of the set after that, for a light
     int size = 0;
 
     void add(const PathSampler& sampler);

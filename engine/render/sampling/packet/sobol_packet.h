@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <experimental/simd>
-#ifdef __AVX__
+#ifdef __AVX2__
 #include <immintrin.h>
 #endif
 
