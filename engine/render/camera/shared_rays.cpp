@@ -1,9 +1,11 @@
 #include "engine/render/camera/shared_rays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <type_traits>
 
+#include "engine/optics/float_error.h"
 #include "engine/render/camera/packet/meet_film.h"
 
 namespace lensproof::render {
@@ -44,7 +46,7 @@ void find_pupil_pdfs(const pupil::PupilSlices& pupil, std::span<const std::uint1
 template <class T>
 BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
                                     const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box, PathCarry carry,
-                                    std::optional<SimdLevel> level)
+                                    std::optional<SimdLevel> level, const optics::SpectralLens<double>* at_borders)
     : grid_(grid),
       lens_(&lens),
       pupil_(&pupil),
@@ -55,6 +57,14 @@ BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const op
       turned_(kSharedChunk),
       rays_(kSharedChunk) {
     chunk_.has_pdfs = carry == PathCarry::wavelengths_and_pdfs;
+    if (at_borders != nullptr) {
+        const optics::TraceLens<double>& judge = at_borders->at(0);
+        const double length_mm = std::abs(judge.image_z - judge.surfaces.front().vertex_z);
+        judge_.emplace(Judge{.lens = at_borders,
+                             .within_mm = 1e-3 * optics::float_error_bound_um(length_mm),
+                             .rays = optics::RayBatch<double>(kSharedChunk),
+                             .meetings = {}});
+    }
 }
 
 template <class T>
@@ -66,6 +76,9 @@ void BasicSharedRays<T>::weigh(CameraPathBuffer& paths) {
         const auto at = static_cast<std::size_t>(first);
         take_heroes(paths, at);
         trace(paths, at);
+        if (judge_) {
+            trace_again_at_borders(paths, at);
+        }
         kernels_->trace_shared(sensor_, chunk_);
         give_weights(paths, at);
     }
@@ -132,6 +145,30 @@ void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first)
         if (chunk_.has_pdfs) {
             find_pupil_pdfs(*pupil_, std::span(rays_.wavelength).first(static_cast<std::size_t>(rays_.size)), *kernels_,
                             meetings);
+        }
+    }
+}
+
+template <class T>
+void BasicSharedRays<T>::trace_again_at_borders(const CameraPathBuffer& paths, std::size_t first) {
+    auto& [lens, within_mm, rays, meetings] = *judge_;
+    OtherRays found;
+    const int count = kernels_->find_at_borders(sensor_, within_mm, chunk_, found);
+    for (int done = 0; done < count; done += rays.size) {
+        rays.size = std::min(kSharedChunk, count - done);
+        const std::span now(found.data() + done, static_cast<std::size_t>(rays.size));
+        for (std::size_t k = 0; k < now.size(); ++k) {
+            const Ray<double> out = paths.ray(first + now[k].path);
+            rays.set(static_cast<int>(k), {out.origin, -1.0 * out.direction});
+            rays.wavelength[k] = chunk_.other_wavelengths[now[k].other][now[k].path];
+        }
+        optics::trace_batch<optics::Direction::forward>(*lens, rays, tracing_);
+        meet_film(lens->at(0).image_z, pupil_->map().plane_z(), *kernels_, rays, meetings);
+        for (std::size_t k = 0; k < now.size(); ++k) {
+            FilmMeetings& to = chunk_.others[now[k].other];
+            to.film_x[now[k].path] = meetings.film_x[k];
+            to.film_y[now[k].path] = meetings.film_y[k];
+            to.transmittance[now[k].path] = meetings.transmittance[k];
         }
     }
 }

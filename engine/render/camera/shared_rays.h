@@ -41,16 +41,18 @@ void find_pupil_pdfs(const pupil::PupilSlices& pupil, std::span<const std::uint1
 ///
 /// The hero's own p and τ are those that its path was made with; the other wavelengths' rays are traced.
 ///
-/// T: double or float, in which they are.
+/// T: double or float, in which they are. Of float the double lens may judge: it is asked again for the rays that end
+/// nearer to their pixel's border than float is allowed to cost (optics::float_error_bound_um), and so says where all
+/// of them end; float says how much of them arrives, and whether a ray that grazes a rim does.
 template <class T>
 class BasicSharedRays {
   public:
     /// Lens and pupil outlive it. `lens` at the strata of `grid`. `is_box`: pixels are the filter, as w needs it; else
     /// the pixel of a path is the one that its film point lies in, and w is for its pdfs alone. `level`: that of
-    /// `trace_batch`.
+    /// `trace_batch`. `at_borders`: judges, if there is one; outlives it, too.
     BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
                     const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box, PathCarry carry,
-                    std::optional<SimdLevel> level = {});
+                    std::optional<SimdLevel> level = {}, const optics::SpectralLens<double>* at_borders = nullptr);
 
     /// Of paths out of a BasicLensPaths. Writes w of its four wavelengths to every path of the buffer and, for
     /// PathCarry::wavelengths_and_pdfs, the pdfs that it was drawn with: ¼ Σ_m p_m, and p of the hero.
@@ -61,6 +63,7 @@ class BasicSharedRays {
     void take_heroes(const CameraPathBuffer& paths, std::size_t first);
     /// Each of the others' rays, and where it ends.
     void trace(const CameraPathBuffer& paths, std::size_t first);
+    void trace_again_at_borders(const CameraPathBuffer& paths, std::size_t first);
     void give_weights(CameraPathBuffer& paths, std::size_t first) const;
 
     spectral::SpectralGrid grid_;
@@ -73,6 +76,15 @@ class BasicSharedRays {
     optics::RayBatch<T> turned_;  // the paths' rays on their way in
     optics::RayBatch<T> rays_;    // a wavelength's
     SharedPaths chunk_{};
+
+    /// What judges at borders.
+    struct Judge {
+        const optics::SpectralLens<double>* lens;
+        double within_mm;
+        optics::RayBatch<double> rays;
+        FilmMeetings meetings;
+    };
+    std::optional<Judge> judge_;
 };
 using SharedRays = BasicSharedRays<double>;
 

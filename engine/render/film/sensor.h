@@ -19,8 +19,10 @@ struct Sensor {
     [[nodiscard]] constexpr Vec2d axis() const {
         return {0.5 * (width - 1) + axis_from_middle_px.x, 0.5 * (height - 1) + axis_from_middle_px.y};
     }
-    [[nodiscard]] constexpr Vec2d position(double u, double v) const {
-        return {-(u - axis().x) * pixel_pitch_mm, (v - axis().y) * pixel_pitch_mm};
+    [[nodiscard]] constexpr Vec2d position(double u, double v) const { return position<double>({u, v}); }
+    template <class T>
+    [[nodiscard]] constexpr Vec2<T> position(const Vec2<T>& pixel) const {
+        return {-(pixel.x - T(axis().x)) * T(pixel_pitch_mm), (pixel.y - T(axis().y)) * T(pixel_pitch_mm)};
     }
     /// The pixel coordinates of a point, on the sensor or beyond it: `position` undone.
     template <class T = double>

@@ -169,6 +169,31 @@ FilmArrival<Numbers> arrivals(const Sensor& sensor, const SharedPaths& paths, st
 }
 
 template <class Abi>
+[[gnu::flatten]] int find_at_borders(const Sensor& sensor, double within_mm, const SharedPaths& paths,
+                                     OtherRays& found) {
+    using Numbers = Pack<double, Abi>;
+    const Numbers half(0.5 * sensor.pixel_pitch_mm);
+    int count = 0;
+    for (int i = 0; i < paths.size; i += Numbers::kLanes) {
+        const Vec2<Numbers> centre = sensor.position<Numbers>(
+            {Numbers::load(paths.centre_x.data() + i), Numbers::load(paths.centre_y.data() + i)});
+        for (std::size_t m = 0; m < paths.others.size(); ++m) {
+            const FilmMeetings& meetings = paths.others[m];
+            const Numbers x = abs(Numbers::load(meetings.film_x.data() + i) - centre.x);
+            const Numbers y = abs(Numbers::load(meetings.film_y.data() + i) - centre.y);
+            const auto is_near = abs(select(x > y, x, y) - half) < Numbers(within_mm) &&
+                                 Numbers::load(meetings.transmittance.data() + i) >= Numbers(0.0);
+            for (int lane = 0; any(is_near) && lane < std::min(Numbers::kLanes, paths.size - i); ++lane) {
+                found[static_cast<std::size_t>(count)] = {static_cast<std::uint16_t>(i + lane),
+                                                          static_cast<std::uint16_t>(m)};
+                count += is_near[lane] ? 1 : 0;
+            }
+        }
+    }
+    return count;
+}
+
+template <class Abi>
 [[gnu::flatten]] void trace_shared(const Sensor& sensor, SharedPaths& paths) {
     using Numbers = Pack<double, Abi>;
     for (int i = 0; i < paths.size; i += Numbers::kLanes) {
@@ -197,6 +222,7 @@ PathKernels path_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
             .cross_film = cross_film_with<Abi, double>,
             .cross_film_in_float = cross_film_with<Abi, float>,
             .weigh_pupil_points = weigh_pupil_points<Abi>,
+            .find_at_borders = find_at_borders<Abi>,
             .trace_shared = trace_shared<Abi>};
 }
 

@@ -35,6 +35,9 @@ struct PathKernels {
     void (*weigh_pupil_points)(const pupil::PupilSliceTables& slices, const std::uint16_t* wavelength, int count,
                                FilmMeetings& meetings);
 
+    /// Which of the others' rays arrive within so many millimetres of their pixel's border; returns how many.
+    int (*find_at_borders)(const Sensor& sensor, double within_mm, const SharedPaths& paths, OtherRays& found);
+
     /// From meetings and heroes the weights and pdfs.
     void (*trace_shared)(const Sensor& sensor, SharedPaths& paths);
 };

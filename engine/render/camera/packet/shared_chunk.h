@@ -25,14 +25,23 @@ struct alignas(optics::kPacketAlignment) FilmMeetings {
     SharedColumn<double> transmittance;  // below 0: the ray does not get there
 };
 
+inline constexpr std::size_t kOtherWavelengths = spectral::kWavelengthsPerPath - 1;
+
+/// One of the others' rays: of which path of the chunk, and the how-manieth other wavelength.
+struct OtherRay {
+    std::uint16_t path;
+    std::uint16_t other;
+};
+using OtherRays = std::array<OtherRay, kOtherWavelengths * kSharedChunk>;
+
 /// The heroes are known from the paths; the others were traced.
 struct alignas(optics::kPacketAlignment) SharedPaths {
     SharedColumn<double> centre_x;  // of the path's pixel, px
     SharedColumn<double> centre_y;
     SharedColumn<double> hero_weight;  // as CameraPathBuffer has them
     SharedColumn<double> hero_etendue;
-    std::array<SharedColumn<std::uint16_t>, spectral::kWavelengthsPerPath - 1> other_wavelengths;
-    std::array<FilmMeetings, spectral::kWavelengthsPerPath - 1> others;
+    std::array<SharedColumn<std::uint16_t>, kOtherWavelengths> other_wavelengths;
+    std::array<FilmMeetings, kOtherWavelengths> others;
     std::array<SharedColumn<float>, spectral::kWavelengthsPerPath> weight;  // as SharedWeights has them
     SharedColumn<double> shared_pdf;
     SharedColumn<double> hero_pdf;
