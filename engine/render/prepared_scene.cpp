@@ -90,13 +90,13 @@ void PreparedScene::refuse_near_lights(const Camera& camera) const {
 
 const Camera& PreparedScene::stray_camera() {
     const bool has_lens = camera_.lens().has_value();
-    const bool is_exact = setup_.camera.model == LensModel::exact;
+    const bool is_exact = traces_in_double(setup_.camera.model);
     if (!has_lens || (is_exact && stray_filter_.name() == filter_.name())) {
         return camera_;
     }
     if (!stray_camera_) {
         CameraSettings settings = is_exact ? setup_.camera : setup_.stray_camera.value_or(setup_.camera);
-        settings.model = LensModel::exact;
+        settings.model = is_exact ? settings.model : LensModel::exact;
         settings.sensor = setup_.camera.sensor;
         stray_camera_.emplace(settings, setup_.spectral, stray_filter_, cache_, integrators_.has_splats());
     }

@@ -264,13 +264,13 @@ void add_render_command(Program& program) {
     command.add_option("SCENE", options->scene, "A scene file").required();
     add_render_job_options(command, *options);
     const auto wishes = std::make_shared<RenderWishes>();
-    std::vector<std::string> models = render::known_lens_models();
+    std::vector<std::string> models = render::lens_model_names();
     models.emplace_back("auto");
     command
         .add_option("--model", wishes->model,
                     fmt::format("What stands for the lens, in place of the scene's model: {}; auto: what --tolerance "
                                 "needs, as `plan` says",
-                                fmt::join(render::known_lens_models(), ", ")))
+                                fmt::join(render::lens_model_names(), ", ")))
         .check(one_of(models));
     command
         .add_option("--tolerance", wishes->tolerance,

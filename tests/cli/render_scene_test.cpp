@@ -79,7 +79,7 @@ TEST(RenderScene, TakesAnotherModelThanTheScenes) {
     ASSERT_EQ(place.run({"render", "pinhole.toml", "--spp", "16", "-o", "b.exr"}).status, 0);
     EXPECT_EQ(place.run({"compare", "a.exr", "b.exr", "--rms-limit", "1e-9"}).status, 0);
     const Outcome exact = render("pinhole.toml", "exact-double", "c.exr");
-    EXPECT_EQ(nlohmann::json::parse(exact.out).at("model"), "exact");
+    EXPECT_EQ(nlohmann::json::parse(exact.out).at("model"), "exact-double");
     const Outcome blades = render("blades.toml", "thin-lens-profile", "d.exr");
     EXPECT_EQ(blades.status, 2);
     EXPECT_TRUE(says(blades.err, "--model is \"thin-lens-profile\", but in blades.toml the camera's blades"));

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "engine/base/infinity.h"
 #include "engine/optics/float_error.h"
@@ -72,7 +73,7 @@ TEST(FloatCamera, TracesTheSamePaths) {
                                                         {"tessar", 2.8, 45.0},
                                                         {"muller-fisheye", 8.0, 12.75},
                                                         {"canon-zoom-70-200", 2.8, 21.6}}) {
-        const auto in_double = camera_of(name, f_number, half_diagonal, render::LensModel::exact);
+        const auto in_double = camera_of(name, f_number, half_diagonal, render::LensModel::exact_double);
         const auto in_float = camera_of(name, f_number, half_diagonal, render::LensModel::exact_float);
         const Paths expected = paths_of(*in_double);
         const Paths found = paths_of(*in_float);
@@ -125,6 +126,68 @@ TEST(FloatCamera, TracesTheSamePaths) {
         EXPECT_LT(worst_direction, direction_bound) << name;
         EXPECT_LT(worst_film_um, bound_um + 1e3 * lens.image_z * direction_bound) << name;
         EXPECT_LT(std::abs(sum_off / sum), 1e-6) << name;
+    }
+}
+
+/// All that a camera says of its paths, row by row of its sensor.
+struct Told {
+    std::vector<double> paths;     // the hero's: film point, ray, weight
+    std::vector<float> weights;    // of all wavelengths
+    std::vector<double> pdfs;      // where they are asked for
+    std::vector<float> with_pdfs;  // weights that go with them
+};
+
+Told told_by(const render::Camera& camera) {
+    Told told;
+    for (const render::PathCarry carry : {render::PathCarry::wavelengths, render::PathCarry::wavelengths_and_pdfs}) {
+        const bool has_pdfs = carry == render::PathCarry::wavelengths_and_pdfs;
+        render::CameraPaths paths = camera.paths(2, carry);
+        render::CameraPathBuffer buffer;
+        paths.start({.first_pixel = 0, .pixels = 1200, .first_sample = 0, .samples = 16});
+        while (paths.fill(buffer)) {
+            for (std::size_t i = 0; i < static_cast<std::size_t>(buffer.size); ++i) {
+                const Ray<double> ray = buffer.ray(i);
+                told.paths.insert(told.paths.end(),
+                                  {buffer.film_x[i], buffer.film_y[i], buffer.weight[i], ray.origin.x, ray.origin.y,
+                                   ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z});
+                std::vector<float>& weights = has_pdfs ? told.with_pdfs : told.weights;
+                weights.insert(weights.end(), buffer.weights[i].begin(), buffer.weights[i].end());
+                if (has_pdfs) {
+                    told.pdfs.insert(told.pdfs.end(), {buffer.pdf[i].shared, buffer.pdf[i].hero});
+                }
+            }
+        }
+    }
+    return told;
+}
+
+// The usual exact camera takes float for how much of a path's other wavelengths arrives, which changes light by less
+// than a ulp of it; all else has the bits of the one in double, rays towards the camera and pdfs too. Checkpoints tell
+// them apart.
+TEST(FloatCamera, CountsOtherWavelengthsOfHeroesInDouble) {
+    for (const auto& [name, f_number, half_diagonal] : {std::tuple{"double-gauss-tronnier", 2.0, 21.6},
+                                                        {"tessar", 2.8, 45.0},
+                                                        {"muller-fisheye", 8.0, 12.75},
+                                                        {"canon-zoom-70-200", 2.8, 21.6}}) {
+        const auto in_double = camera_of(name, f_number, half_diagonal, render::LensModel::exact_double);
+        const auto usual = camera_of(name, f_number, half_diagonal, render::LensModel::exact);
+        const Told expected = told_by(*in_double);
+        const Told found = told_by(*usual);
+        EXPECT_EQ(found.paths, expected.paths) << name;
+        EXPECT_EQ(found.pdfs, expected.pdfs) << name;
+        EXPECT_EQ(found.with_pdfs, expected.with_pdfs) << name;
+        EXPECT_NE(found.weights, expected.weights) << name;
+        EXPECT_NE(usual->hash(), in_double->hash()) << name;
+        ASSERT_EQ(found.weights.size(), expected.weights.size()) << name;
+        double sum = 0.0;
+        double sum_off = 0.0;
+        for (std::size_t i = 0; i < expected.weights.size(); ++i) {
+            sum += expected.weights[i];
+            sum_off += static_cast<double>(found.weights[i]) - expected.weights[i];
+        }
+        fmt::print("{}: light off by {:.2g}\n", name, sum_off / sum);
+        EXPECT_GT(expected.weights.size(), 10000U) << name;
+        EXPECT_LT(std::abs(sum_off / sum), std::numeric_limits<float>::epsilon()) << name;
     }
 }
 

@@ -90,6 +90,22 @@ spectral::SpectralGrid Camera::make_grid(const SpectralSampling& sampling) {
     return {spectral::wavelength_strata(band.min_nm, band.max_nm, sampling.strata())};
 }
 
+namespace {
+
+/// Of a model that traces surfaces.
+TracePrecision precision_of(LensModel model) {
+    switch (model) {
+        case LensModel::exact_double:
+            return TracePrecision::in_double;
+        case LensModel::exact_float:
+            return TracePrecision::in_float;
+        default:
+            return TracePrecision::heroes_in_double;
+    }
+}
+
+}  // namespace
+
 Camera::Optics Camera::make_optics(bool meets_light_paths, std::shared_ptr<device::SharedDevice> device) const {
     if (device && !traces_surfaces(settings_.model)) {
         device->refuse(fmt::format("it traces lenses, and the camera's model is {}", name_of(settings_.model)));
@@ -105,9 +121,7 @@ Camera::Optics Camera::make_optics(bool meets_light_paths, std::shared_ptr<devic
     }
     if (traces_surfaces(settings_.model)) {
         return Optics(std::in_place_type<ExactCamera>, lens_.value(), wavelengths, film_radius_mm, cache_,
-                      meets_light_paths,
-                      settings_.model == LensModel::exact ? TracePrecision::in_double : TracePrecision::in_float,
-                      std::move(device));
+                      meets_light_paths, precision_of(settings_.model), std::move(device));
     }
     if (settings_.model == LensModel::thin_lens_profile || settings_.model == LensModel::pinhole_profile) {
         return Optics(std::in_place_type<ProfileCamera>,
@@ -188,9 +202,9 @@ std::string Camera::hash() const {
         }
         append_barrel_bytes(bytes, *lens_);
         append_dust_bytes(bytes, *lens_);
-        if (exact->precision() == TracePrecision::in_float) {
-            bytes += "in float";
-        }
+        bytes += exact->precision() == TracePrecision::in_float           ? "in float"
+                 : exact->precision() == TracePrecision::heroes_in_double ? "heroes in double"
+                                                                          : "";
         bytes += polynomial != nullptr ? polynomial->polynomial().serialized() : "";
     } else if (const auto* profile = std::get_if<ProfileCamera>(&optics_)) {
         bytes = profile->bytes();

@@ -22,7 +22,6 @@ namespace {
 
 constexpr Bounds kSensorSide{.min = 0.0, .max = 1e4, .min_excluded = true};
 constexpr double kMostPixels = 200e6;
-constexpr const char* kExactInDouble = "exact-double";
 
 Sensor read_sensor(TomlTable& table) {
     const std::vector<double> size = table.numbers("sensor_mm", 2, kSensorSide);
@@ -109,7 +108,7 @@ void read_place(TomlTable& table, CameraSettings& camera) {
 /// The model, and a focal length that stands in the place of a lens.
 void read_model(TomlTable& table, CameraSettings& camera) {
     if (table.has("model")) {
-        camera.model = lens_model_named(table.choice("model", known_lens_models())).value();
+        camera.model = lens_model_named(table.choice("model", lens_model_names())).value();
     }
     camera.focal_length_mm = table.optional_number("focal_length_mm", kPositive);
 }
@@ -123,8 +122,9 @@ void check_model(TomlTable& table, const CameraSettings& camera) {
 }  // namespace
 
 const std::vector<std::string>& lens_model_names() {
-    static const std::vector<std::string> names = {"exact",   "polynomial",  "paraxial",          "thin-lens",
-                                                   "pinhole", "exact-float", "thin-lens-profile", "pinhole-profile"};
+    static const std::vector<std::string> names = {"exact",       "polynomial",  "paraxial",          "thin-lens",
+                                                   "pinhole",     "exact-float", "thin-lens-profile", "pinhole-profile",
+                                                   "exact-double"};
     return names;
 }
 
@@ -133,18 +133,9 @@ const std::string& name_of(LensModel model) {
 }
 
 std::optional<LensModel> lens_model_named(const std::string& name) {
-    if (name == kExactInDouble) {
-        return LensModel::exact;
-    }
     const std::vector<std::string>& names = lens_model_names();
     const auto found = std::ranges::find(names, name);
     return found != names.end() ? std::optional(static_cast<LensModel>(found - names.begin())) : std::nullopt;
-}
-
-std::vector<std::string> known_lens_models() {
-    std::vector<std::string> names = lens_model_names();
-    names.emplace_back(kExactInDouble);
-    return names;
 }
 
 std::optional<ModelConflict> model_conflict(const CameraSettings& camera) {

@@ -16,8 +16,10 @@ namespace lensproof::render {
 
 /// What stands for the lens. All are made from a lens and its settings, expose alike, and so can be compared:
 ///
-///   exact              the lens itself, surface by surface; "exact-double" too
-///   exact-float        the same in float
+///   exact              the lens itself, surface by surface: all places and angles in double; of a path's wavelengths
+///                      but its hero how much arrives, in float
+///   exact-double       all in double
+///   exact-float        all in float
 ///   polynomial         sparse polynomials of its traced rays, of known error (engine/polynomial)
 ///   paraxial           its Gaussian optics at each wavelength: pupils, principal planes, axial and lateral colour of
 ///                      first order; no other aberration, no rims but the stop
@@ -36,19 +38,22 @@ enum class LensModel {
     pinhole,
     exact_float,
     thin_lens_profile,
-    pinhole_profile
+    pinhole_profile,
+    exact_double
 };
 
-/// "exact", …, in the order of the enumeration; and what a name means, "exact-double" too: nothing for others.
+/// "exact", …, in the order of the enumeration; and what a name means: nothing for others.
 const std::vector<std::string>& lens_model_names();
 const std::string& name_of(LensModel model);
 std::optional<LensModel> lens_model_named(const std::string& name);
-/// All names that scenes and commands know.
-std::vector<std::string> known_lens_models();
 
 /// Whether its rays are traced through the lens, surface by surface.
 constexpr bool traces_surfaces(LensModel model) {
-    return model == LensModel::exact || model == LensModel::exact_float;
+    return model == LensModel::exact || model == LensModel::exact_double || model == LensModel::exact_float;
+}
+/// And in double.
+constexpr bool traces_in_double(LensModel model) {
+    return traces_surfaces(model) && model != LensModel::exact_float;
 }
 
 /// Dust and scratches on the lens's first surface (optics::FrontDust), as a picture of its clear aperture has them.

@@ -14,13 +14,14 @@ ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wa
                          const Cache& cache, bool meets_light_paths, TracePrecision precision,
                          std::shared_ptr<device::SharedDevice> device)
     : device_(std::move(device)),
+      precision_(precision),
       lens_(optics::at_wavelengths<double>(lens, wavelengths_nm)),
       pupil_(pupil::kept_pupil_map(cache, lens_.at(), lens.is_rotationally_symmetric, film_radius_mm,
                                    {.device = device_.get()})),
       slices_(pupil_, lens_.wavelengths()),
       front_(pupil::front_sphere(lens_.at().front())),
       dust_(lens.dust) {
-    if (precision == TracePrecision::in_float) {
+    if (precision != TracePrecision::in_double) {
         in_float_ = optics::at_wavelengths<float>(lens, wavelengths_nm);
     }
     if (meets_light_paths) {
@@ -41,7 +42,7 @@ void ExactCamera::put_on_device() {
         return;
     }
     try {
-        if (in_float_) {
+        if (precision_ == TracePrecision::in_float) {
             on_device_.emplace(std::in_place_type<DeviceCamera<float>>, device_->device(), *in_float_, slices_);
         } else {
             on_device_.emplace(std::in_place_type<DeviceCamera<double>>, device_->device(), lens_, slices_);
@@ -53,45 +54,52 @@ void ExactCamera::put_on_device() {
 
 ExactCamera::Paths::Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
                           PathCarry carry)
-    : traced_(traced(camera, film, grid, carry)),
+    : heroes_(heroes_of(camera, film, carry)),
+      others_(others_of(camera, film, grid, carry)),
       dust_(camera.dust_ ? &*camera.dust_ : nullptr),
       carry_(carry),
       is_shared_(film.filter.is_box()) {}
 
-ExactCamera::Paths::TracedInEither ExactCamera::Paths::traced(const ExactCamera& camera, const FilmSampling& film,
-                                                              const spectral::SpectralGrid& grid, PathCarry carry) {
-    const auto in = [&]<class T>(const optics::SpectralLens<T>& lens) -> TracedInEither {
+ExactCamera::Paths::Heroes ExactCamera::Paths::heroes_of(const ExactCamera& camera, const FilmSampling& film,
+                                                         PathCarry carry) {
+    const auto in = [&]<class T>(const optics::SpectralLens<T>& lens) -> Heroes {
         BasicLensPaths<T> paths(film, lens, camera.slices_);
-        BasicSharedRays<T> shared(grid, lens, camera.slices_, film.sensor, film.filter.is_box(), carry);
         if (camera.on_device_ && film.filter.is_box()) {
-            return Traced<DevicePaths, T>{
-                .paths = {*camera.device_, std::get<DeviceCamera<T>>(*camera.on_device_), film, camera.pupil_.plane_z(),
-                          carry != PathCarry::hero, std::move(paths)},
-                .shared = std::move(shared)};
+            return DevicePaths<T>(*camera.device_, std::get<DeviceCamera<T>>(*camera.on_device_), film,
+                                  camera.pupil_.plane_z(), carry != PathCarry::hero, std::move(paths));
         }
-        return Traced<BasicLensPaths, T>{.paths = std::move(paths), .shared = std::move(shared)};
+        return paths;
     };
-    return camera.in_float_ ? in(*camera.in_float_) : in(camera.lens_);
+    return camera.precision_ == TracePrecision::in_float ? in(*camera.in_float_) : in(camera.lens_);
+}
+
+ExactCamera::Paths::Others ExactCamera::Paths::others_of(const ExactCamera& camera, const FilmSampling& film,
+                                                         const spectral::SpectralGrid& grid, PathCarry carry) {
+    const auto in = [&]<class T>(const optics::SpectralLens<T>& lens, const optics::SpectralLens<double>* at_borders) {
+        return BasicSharedRays<T>(grid, lens, camera.slices_, film.sensor, film.filter.is_box(), carry, {}, at_borders);
+    };
+    const bool are_in_double =
+        camera.precision_ == TracePrecision::in_double ||
+        (camera.precision_ == TracePrecision::heroes_in_double && carry == PathCarry::wavelengths_and_pdfs);
+    if (are_in_double) {
+        return in(camera.lens_, nullptr);
+    }
+    return in(*camera.in_float_, camera.precision_ == TracePrecision::heroes_in_double ? &camera.lens_ : nullptr);
 }
 
 void ExactCamera::Paths::start(const CameraPathRange& range) {
-    std::visit([&](auto& traced) { traced.paths.start(range); }, traced_);
+    std::visit([&](auto& heroes) { heroes.start(range); }, heroes_);
 }
 
 std::int64_t ExactCamera::Paths::started() const {
-    return std::visit([](const auto& traced) { return traced.paths.started(); }, traced_);
+    return std::visit([](const auto& heroes) { return heroes.started(); }, heroes_);
 }
 
 bool ExactCamera::Paths::fill(CameraPathBuffer& buffer) {
-    const bool is_filled = std::visit(
-        [&](auto& traced) {
-            const bool is_any = traced.paths.fill(buffer);
-            if (carry_ == PathCarry::wavelengths_and_pdfs || (carry_ == PathCarry::wavelengths && is_shared_)) {
-                traced.shared.weigh(buffer);
-            }
-            return is_any;
-        },
-        traced_);
+    const bool is_filled = std::visit([&](auto& heroes) { return heroes.fill(buffer); }, heroes_);
+    if (carry_ == PathCarry::wavelengths_and_pdfs || (carry_ == PathCarry::wavelengths && is_shared_)) {
+        std::visit([&](auto& others) { others.weigh(buffer); }, others_);
+    }
     if (carry_ != PathCarry::hero && !is_shared_) {
         buffer.leave_heroes_alone();
     }
@@ -169,7 +177,7 @@ void ExactCamera::trace_importances(const optics::SpectralLens<T>& lens, const S
 
 void ExactCamera::importances(const Sensor& sensor, std::span<const Ray<double>> rays,
                               std::span<const spectral::PathWavelengths> paths, std::span<FilmImportance> found) const {
-    if (in_float_) {
+    if (precision_ == TracePrecision::in_float) {
         trace_importances(*in_float_, sensor, rays, paths, found);
     } else {
         trace_importances(lens_, sensor, rays, paths, found);

@@ -18,14 +18,19 @@
 namespace lensproof::render {
 
 /// What rays through a lens are traced in.
-enum class TracePrecision { in_double, in_float };
+enum class TracePrecision {
+    in_double,
+    heroes_in_double,  // and how much of a path's other wavelengths arrives in float: see BasicSharedRays
+    in_float
+};
 
 /// A lens, a stratum of the grid each, with maps of where light passes it. It answers what camera.h asks, in lens
 /// space: rays are drawn over the lens's front (EntranceMap) and traced forward, each wavelength by itself.
 ///
 /// In float every ray through the glass is, outwards and inwards, in packets twice as wide; it leaves the lens some
 /// ulps of a float beside the one in double, and now and then another's fate at a rim. Maps, what is drawn from them
-/// and the scene are in double.
+/// and the scene are in double. Between the two, with heroes in double, all places are a double's; where paths are
+/// asked for their pdfs, and of rays towards the camera, everything is in double.
 ///
 /// Dust on the front takes from what a path counts, and changes nothing else about it.
 class ExactCamera {
@@ -48,17 +53,15 @@ class ExactCamera {
         [[nodiscard]] std::int64_t started() const;
 
       private:
-        template <template <class> class PathsIn, class T>
-        struct Traced {
-            PathsIn<T> paths;
-            BasicSharedRays<T> shared;
-        };
-        using TracedInEither = std::variant<Traced<BasicLensPaths, double>, Traced<BasicLensPaths, float>,
-                                            Traced<DevicePaths, double>, Traced<DevicePaths, float>>;
-        static TracedInEither traced(const ExactCamera& camera, const FilmSampling& film,
-                                     const spectral::SpectralGrid& grid, PathCarry carry);
+        using Heroes =
+            std::variant<BasicLensPaths<double>, BasicLensPaths<float>, DevicePaths<double>, DevicePaths<float>>;
+        using Others = std::variant<BasicSharedRays<double>, BasicSharedRays<float>>;
+        static Heroes heroes_of(const ExactCamera& camera, const FilmSampling& film, PathCarry carry);
+        static Others others_of(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
+                                PathCarry carry);
 
-        TracedInEither traced_;
+        Heroes heroes_;
+        Others others_;
         const optics::FrontDust* dust_;  // or null
         PathCarry carry_;
         bool is_shared_;  // wider filters than the box draw film points unevenly: the hero stays alone
@@ -76,9 +79,7 @@ class ExactCamera {
 
     [[nodiscard]] const optics::SpectralLens<double>& lens() const { return lens_; }
     [[nodiscard]] const pupil::PupilSlices& pupil() const { return slices_; }
-    [[nodiscard]] TracePrecision precision() const {
-        return in_float_ ? TracePrecision::in_float : TracePrecision::in_double;
-    }
+    [[nodiscard]] TracePrecision precision() const { return precision_; }
 
   private:
     void put_on_device();
@@ -92,8 +93,9 @@ class ExactCamera {
                            std::span<const spectral::PathWavelengths> paths, std::span<FilmImportance> found) const;
 
     std::shared_ptr<device::SharedDevice> device_;
+    TracePrecision precision_;
     optics::SpectralLens<double> lens_;
-    std::optional<optics::SpectralLens<float>> in_float_;
+    std::optional<optics::SpectralLens<float>> in_float_;  // but where all is in double
     pupil::PupilMap pupil_;
     pupil::PupilSlices slices_;
     /// For far light, with a large defensive fraction: where near points' light enters lies a little beside its

@@ -9,7 +9,7 @@
 namespace lensproof::render {
 
 CameraFront::CameraFront(const Camera& camera) : camera_(&camera) {
-    if (camera.settings().model != LensModel::exact) {
+    if (!traces_in_double(camera.settings().model)) {
         throw InputError(
             fmt::format("the camera's model is \"{}\", expected \"exact\": in no other one does light go astray",
                         name_of(camera.settings().model)));

@@ -175,7 +175,7 @@ const std::vector<Rung>& ladder() {
         std::vector<Rung> all;
         for (const LensModel model :
              {LensModel::pinhole, LensModel::pinhole_profile, LensModel::thin_lens, LensModel::thin_lens_profile,
-              LensModel::paraxial, LensModel::polynomial, LensModel::exact_float}) {
+              LensModel::paraxial, LensModel::polynomial, LensModel::exact_float, LensModel::exact}) {
             all.push_back({.name = render::name_of(model), .model = model});
         }
         all.push_back({.name = kReferenceRung});

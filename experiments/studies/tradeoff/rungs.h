@@ -19,7 +19,7 @@ inline constexpr const char* kReferenceRung = "exact-double";
 /// it).
 struct Rung {
     std::string name;
-    render::LensModel model = render::LensModel::exact;
+    render::LensModel model = render::LensModel::exact_double;
     std::optional<int> wavelengths = std::nullopt;
     std::optional<scene::HitPrecision> hits = std::nullopt;
 };

@@ -245,7 +245,7 @@ std::vector<float> pictured(const SceneSetup& setup, const PixelFilter& filter,
 }
 
 TEST(PreparedScene, IsTheSamePictureOnADevice) {
-    for (const char* model : {"exact", "exact-float"}) {
+    for (const char* model : {"exact", "exact-double", "exact-float"}) {
         Heard heard;
         const std::vector<float> expected = pictured(wall(model), {}, {}, heard);
         EXPECT_GT(std::ranges::count_if(expected, [](float light) { return light > 0.0F; }), 200);
