@@ -96,11 +96,15 @@ class PupilSlice {
         const T target = fraction * whole_area_;
         T panel = first_panel(fraction);
         T area_before = mean(column(panel), kArea);
-        for (Mask is_before = is_lit_; any(is_before);) {
+        const auto advance = [&] {
             const T area_after = mean(column(panel), kArea + kPerColumn);
-            is_before = is_lit_ && !(area_after > target);
+            const Mask is_before = is_lit_ && !(area_after > target);
             panel = select(is_before, panel + T(1), panel);
             area_before = select(is_before, area_after, area_before);
+            return is_before;
+        };
+        advance();  // by one in half of all packets, hardly ever by more: a branch would be mispredicted as often
+        while (any(advance())) {
         }
         const PupilPanel<T> found = panel_at(panel);
         const Vec2<T> own = found.point(found.cut(target - area_before), v);

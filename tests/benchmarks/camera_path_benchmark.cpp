@@ -201,8 +201,7 @@ void time_set_up(benchmark::State& state, const Setting& setting) {
 }
 
 void register_camera_paths(const Setting& setting, Consumer consumer) {
-    const SimdLevel widest = available_simd_levels().back();
-    const auto add = [&](const char* technique, auto run) {
+    const auto add = [&](const std::string& technique, auto run) {
         benchmark::RegisterBenchmark(
             fmt::format("camera_paths/{}/{}{}", setting.lens, technique, consumer == Consumer::chart ? "/chart" : "")
                 .c_str(),
@@ -210,8 +209,10 @@ void register_camera_paths(const Setting& setting, Consumer consumer) {
             ->Unit(benchmark::kMillisecond);
     };
     add("one_by_one", [=](benchmark::State& state) { time_one_by_one(state, setting, consumer); });
-    add("buffers/scalar", [=](benchmark::State& state) { time_buffers(state, setting, SimdLevel::scalar, consumer); });
-    add("buffers/double", [=](benchmark::State& state) { time_buffers(state, setting, widest, consumer); });
+    for (const SimdLevel level : available_simd_levels()) {
+        add(fmt::format("buffers/{}", simd_name(level)),
+            [=](benchmark::State& state) { time_buffers(state, setting, level, consumer); });
+    }
 }
 
 }  // namespace

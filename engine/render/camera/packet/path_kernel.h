@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "engine/base/pack.h"
+#include "engine/base/twin.h"
 #include "engine/render/camera/packet/aim.h"
 #include "engine/render/camera/packet/meet_film.h"
 #include "engine/render/camera/packet/path_kernels.h"
@@ -69,7 +70,7 @@ template <class Abi>
 
 template <class Abi>
 [[gnu::flatten]] void draw_pupil_points(const pupil::PupilSliceTables& slices, PathStarts& starts) {
-    using Numbers = Pack<double, Abi>;
+    using Numbers = Twin<Twin<Pack<double, Abi>>>;
     const Numbers defensive_fraction(slices.defensive_fraction);
     for (int i = 0; i < starts.size; i += Numbers::kLanes) {
         const pupil::PupilSlice<Numbers> slice(
@@ -142,7 +143,7 @@ template <class Abi, class T>
 template <class Abi>
 [[gnu::flatten]] void weigh_pupil_points(const pupil::PupilSliceTables& slices, const std::uint16_t* wavelength,
                                          int count, FilmMeetings& meetings) {
-    using Numbers = Pack<double, Abi>;
+    using Numbers = Twin<Twin<Pack<double, Abi>>>;
     for (int i = 0; i < count; i += Numbers::kLanes) {
         const pupil::PupilSlice<Numbers> slice(
             slices, Numbers::load(wavelength + i),
