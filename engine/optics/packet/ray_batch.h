@@ -29,6 +29,12 @@ struct PacketAllocator {
 template <class T>
 using PacketColumn = std::vector<T, PacketAllocator<T>>;
 
+/// How long a column is of so many: by what fills the last packet longer.
+constexpr std::size_t padded(int count) {
+    const auto packets = static_cast<std::size_t>((count + kMostLanes - 1) / kMostLanes);
+    return packets * kMostLanes;
+}
+
 /// Rays in columns of someone else's memory, each as in RayBatch below: aligned for packets, and as long as fills the
 /// last one.
 template <class T>
@@ -121,10 +127,6 @@ struct RayBatch {
     }
 
   private:
-    static std::size_t padded(int rays) {
-        const auto packets = static_cast<std::size_t>((rays + kMostLanes - 1) / kMostLanes);
-        return packets * kMostLanes;
-    }
     static PacketColumn<T> column(int rays) { return PacketColumn<T>(padded(rays)); }
 };
 

@@ -11,7 +11,7 @@ CameraPathBuffer::CameraPathBuffer(int most) : capacity(most) {
     if (most < 1) {
         throw std::invalid_argument("a buffer of camera paths holds one at least");
     }
-    const auto resize = [most](auto&... columns) { (columns.resize(static_cast<std::size_t>(most)), ...); };
+    const auto resize = [most](auto&... columns) { (columns.resize(optics::padded(most)), ...); };
     resize(pixel, sample, wavelength, film_x, film_y, weight, etendue);
     resize(origin.x, origin.y, origin.z, direction.x, direction.y, direction.z);
 }

@@ -46,8 +46,8 @@ struct CameraPathBuffer {
     /// pdf that it was drawn with, per etendue times a pixel's area.
     std::vector<std::array<float, spectral::kWavelengthsPerPath>> weights;
     std::vector<PathPdf> pdf;
-    int capacity = 0;
-    int size = 0;  // paths in use
+    int capacity = 0;  // columns are longer by what fills the last packet
+    int size = 0;      // paths in use
 
     [[nodiscard]] Ray<double> ray(std::size_t i) const {
         return {{origin.x[i], origin.y[i], origin.z[i]}, {direction.x[i], direction.y[i], direction.z[i]}};

@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "engine/render/camera/survivors.h"
+
 namespace lensproof::render {
 
 namespace {
@@ -15,30 +17,6 @@ void draw_one_pupil_point(const pupil::PupilSlices& pupil, PathStarts& starts, s
     starts.pupil_x[i] = draw.point.x;
     starts.pupil_y[i] = draw.point.y;
     starts.pupil_area[i] = draw.area;
-}
-
-/// Which paths of a chunk left the lens, in their order.
-struct Survivors {
-    std::array<std::uint16_t, kPathChunk> path;
-    int count = 0;
-
-    /// Writes what a column has of them to `to`, one after the other.
-    template <class From, class To>
-    void copy(const From* column, To* to) const {
-        for (int k = 0; k < count; ++k) {
-            to[k] = column[path[static_cast<std::size_t>(k)]];
-        }
-    }
-};
-
-template <class T>
-Survivors find_survivors(const PathStarts& starts, const optics::RayBatch<T>& rays) {
-    Survivors survivors;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
-        survivors.path[static_cast<std::size_t>(survivors.count)] = static_cast<std::uint16_t>(i);
-        survivors.count += rays.status[i] == optics::RayStatus::ok && starts.pupil_area[i] > 0.0 ? 1 : 0;
-    }
-    return survivors;
 }
 
 /// Rays as aimed, rounded.
@@ -131,7 +109,9 @@ void BasicLensPaths<T>::move_survivors(PathStarts& starts, CameraPathBuffer& buf
         for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
             starts.weight[i] *= rays.transmittance[i];
         }
-        const Survivors survivors = find_survivors(starts, rays);
+        const Survivors survivors(rays.size, [&](std::size_t i) {
+            return rays.status[i] == optics::RayStatus::ok && starts.pupil_area[i] > 0.0;
+        });
         buffer.append(starts, rays, survivors.count, [&](const auto* from, auto* to) { survivors.copy(from, to); });
     };
     const int first = buffer.size;

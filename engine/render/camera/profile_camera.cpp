@@ -4,19 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
 
 #include "engine/base/angle.h"
 #include "engine/base/bytes.h"
 #include "engine/base/disc.h"
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
+#include "engine/render/camera/survivors.h"
 
 namespace lensproof::render {
 
 namespace {
-
-// Rays that were made through a pupil's edge lie in it, wherever rounding may see them.
-constexpr double kEdge = 1.0 + 1e-9;
 
 double square(double x) {
     return x * x;
@@ -24,17 +24,35 @@ double square(double x) {
 
 }  // namespace
 
-Vec3d ProfileCamera::Chief::across(Vec2d q) const {
-    return {-azimuth.y * q.x + cosine * azimuth.x * q.y, azimuth.x * q.x + cosine * azimuth.y * q.y, -sine * q.y};
-}
-
-Vec2d ProfileCamera::Chief::across(const Vec3d& from_centre) const {
-    return {azimuth.x * from_centre.y - azimuth.y * from_centre.x,
-            cosine * (azimuth.x * from_centre.x + azimuth.y * from_centre.y) - sine * from_centre.z};
+template <class Profiles, class Of>
+ProfileCamera::CurveColumns::CurveColumns(const Profiles& profiles, const Of& of) {
+    constexpr std::size_t kNumbers = 4;
+    for (const auto& profile : profiles) {
+        pieces_each = std::max(pieces_each, of(profile).steps() + 1);
+    }
+    for (const auto& profile : profiles) {
+        const RadialCurve& curve = of(profile);
+        per_step.push_back(curve.per_step());
+        end.push_back(curve.end());
+        curve.append_pieces(pieces);
+        const RadialCurve::At last = curve.at(curve.end());
+        pieces.insert(pieces.end(), {last.value, curve.end() > 0.0 ? last.slope / curve.per_step() : 0.0, 0.0, 0.0});
+        pieces.resize(end.size() * pieces_each * kNumbers);
+    }
 }
 
 ProfileCamera::ProfileCamera(LensProfile profile, const ProfileOpening& opening)
-    : profile_(std::move(profile)), opening_(opening) {
+    : profile_(std::move(profile)),
+      opening_(opening),
+      is_found_in_a_step_(std::ranges::all_of(
+          profile_.at, [](const RadialProfile& at) { return at.field_angle.is_found_in_a_step(); })),
+      field_angle_(
+          profile_.at, [](const RadialProfile& at) -> auto& { return at.field_angle.curve(); }),
+      radius_(
+          profile_.at, [](const RadialProfile& at) -> auto& { return at.field_angle.inverse(); }),
+      illumination_(
+          profile_.at, [](const RadialProfile& at) -> auto& { return at.illumination; }),
+      pupil_z_(std::span(&profile_.pupil_z, 1), std::identity()) {
     constexpr int kLooks = 1024;
     const double last_field = profile_.pupil_z.end();
     const double axial_z = profile_.pupil_z.at(0.0).value;
@@ -49,6 +67,7 @@ ProfileCamera::ProfileCamera(LensProfile profile, const ProfileOpening& opening)
     for (std::size_t k = 0; k < profile_.at.size(); ++k) {
         const auto wavelength = static_cast<std::uint16_t>(k);
         const RadialProfile& at = profile_.at[k];
+        transmittance_.push_back(at.transmittance);
         for (int i = 0; i <= kLooks; ++i) {
             const double radius = at.field_angle.end() * i / kLooks;
             const RadialCurve::At angle = at.field_angle.at(radius);
@@ -128,96 +147,84 @@ std::optional<ProfileCamera::Chief> ProfileCamera::chief_of(const LightOrigin& f
     return length(from.at - axial) > near_mm_ ? std::optional(chief_through(from.at)) : std::nullopt;
 }
 
-double ProfileCamera::focus_vergence(const Chief& chief) const {
-    return !opening_.is_pinhole && chief.cosine > 0.0 ? 1.0 / (chief.pupil_z - opening_.focus_z) : 0.0;
-}
-
-double ProfileCamera::per_etendue(const Chief& chief, Vec2d offset) const {
-    const double k = focus_vergence(chief);
-    const double v = k * chief.cosine;
-    const double q_z = -chief.sine * offset.y;
-    return square(1.0 + v * v * dot(offset, offset)) / ((1.0 + v * chief.pupil_slope * chief.sine) * (1.0 + k * q_z));
-}
-
 double ProfileCamera::pupil_area(std::uint16_t wavelength, double radius, double angle_slope, double sine,
                                  double illumination) const {
-    const double solid_angle = (radius > 0.0 ? sine / radius : angle_slope) * angle_slope;
-    return illumination / (profile_.at[wavelength].transmittance * solid_angle);
+    return profile_pupil_area(radius, angle_slope, sine, illumination, profile_.at[wavelength].transmittance);
 }
 
 Vec2d ProfileCamera::semi_axes(std::uint16_t wavelength, double area) const {
-    return {axial_radius_[wavelength], area / (kPi * axial_radius_[wavelength])};
+    return profile_semi_axes(axial_radius_[wavelength], area);
+}
+
+ProfileTables ProfileCamera::tables() const {
+    return {.field_angle = field_angle_.view(),
+            .radius = radius_.view(),
+            .illumination = illumination_.view(),
+            .pupil_z = pupil_z_.view(),
+            .transmittance = transmittance_.data(),
+            .axial_radius = axial_radius_.data(),
+            .is_pinhole = opening_.is_pinhole,
+            .focus_z = opening_.focus_z,
+            .lead_mm = lead_mm_};
 }
 
 ProfileCamera::Paths::Paths(const ProfileCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
-                            PathCarry carry)
-    : samples_(film, static_cast<int>(camera.profile_.at.size())),
-      camera_(&camera),
+                            PathCarry carry, std::optional<SimdLevel> level)
+    : samples_(film, static_cast<int>(camera.profile_.at.size()), level),
+      weigher_(grid, film.sensor, film.filter.is_box(), true, path_kernels(level)),
+      rays_(kPathChunk),
       sensor_(film.sensor),
       grid_(grid),
+      camera_(&camera),
+      kernels_(&path_kernels(level)),
       carry_(carry),
       is_box_(film.filter.is_box()) {}
 
 bool ProfileCamera::Paths::fill(CameraPathBuffer& buffer) {
-    if (carry_ != PathCarry::hero) {
-        buffer.weights.resize(static_cast<std::size_t>(buffer.capacity));
-        buffer.pdf.resize(buffer.weights.size());
+    const bool is_filled = samples_.fill(buffer, [&](PathStarts& starts) { append(starts, buffer); });
+    if (carry_ == PathCarry::wavelengths_and_pdfs || (carry_ == PathCarry::wavelengths && is_box_)) {
+        weigher_.weigh(buffer, [&](std::size_t first, SharedPaths& chunk) { meet_film(buffer, first, chunk); });
     }
-    const bool is_filled = samples_.fill(buffer, [&](const PathStarts& starts) {
-        for (int i = 0; i < starts.size; ++i) {
-            append(starts, static_cast<std::size_t>(i), buffer);
-        }
-    });
     if (carry_ != PathCarry::hero && !is_box_) {
         buffer.leave_heroes_alone();
     }
     return is_filled;
 }
 
-void ProfileCamera::Paths::append(const PathStarts& starts, std::size_t sample, CameraPathBuffer& buffer) {
-    const std::uint16_t wavelength = starts.wavelength[sample];
-    const RadialProfile& profile = camera_->profile_.at[wavelength];
-    const Vec2d film{starts.film_x[sample], starts.film_y[sample]};
-    const double radius = length(film);
-    if (!(radius < profile.field_angle.end())) {
-        return;
-    }
-    const double illumination = profile.illumination.at(radius).value;
-    if (!(illumination > 0.0)) {
-        return;
-    }
-    ++started_;
-    const RadialCurve::At angle = profile.field_angle.at(radius);
-    Meeting meeting{.chief = camera_->chief_at(angle.value, radius > 0.0 ? film / radius : Vec2d{1.0, 0.0}),
-                    .offset = {}};
-    const Chief& chief = meeting.chief;
-    if (!camera_->opening_.is_pinhole) {
-        const Vec2d in_disc = warped_onto_disc(1.0, starts.pupil_u[sample], starts.pupil_v[sample]);
-        const double area = camera_->pupil_area(wavelength, radius, angle.slope, chief.sine, illumination);
-        const Vec2d axes = camera_->semi_axes(wavelength, area);
-        meeting.offset = {axes.x * cross(chief.azimuth, in_disc), axes.y * dot(chief.azimuth, in_disc)};
-    }
-    const Vec3d from_centre = chief.across(meeting.offset);
-    const double vergence = camera_->focus_vergence(chief) * chief.cosine;
-    const Vec3d direction = normalized(chief.outwards() - vergence * from_centre);
-    const Vec3d origin = chief.centre() + from_centre + camera_->lead_mm_ * direction;
+void ProfileCamera::Paths::append(PathStarts& starts, CameraPathBuffer& buffer) {
+    kernels_->leave_profile_camera(camera_->tables(), starts, rays_);
+    const Survivors lit(starts.size, [&](std::size_t i) { return starts.weight[i] > 0.0; });
+    std::transform(starts.weight.begin(), starts.weight.begin() + starts.size, starts.filter_weight.begin(),
+                   starts.weight.begin(), std::multiplies<>());
+    buffer.append(starts, rays_, lit.count, [&](const auto* from, auto* to) { lit.copy(from, to); });
+    started_ += lit.count;
+}
 
-    const auto at = static_cast<std::size_t>(buffer.size++);
-    buffer.pixel[at] = starts.pixel[sample];
-    buffer.sample[at] = starts.sample[sample];
-    buffer.wavelength[at] = wavelength;
-    buffer.film_x[at] = film.x;
-    buffer.film_y[at] = film.y;
-    buffer.weight[at] = illumination * starts.filter_weight[sample];
-    buffer.origin.x[at] = origin.x;
-    buffer.origin.y[at] = origin.y;
-    buffer.origin.z[at] = origin.z;
-    buffer.direction.x[at] = direction.x;
-    buffer.direction.y[at] = direction.y;
-    buffer.direction.z[at] = direction.z;
-    if (carry_ == PathCarry::wavelengths_and_pdfs || (carry_ == PathCarry::wavelengths && is_box_)) {
-        const FilmImportance shared = camera_->film(sensor_, meeting, grid_.path(wavelength));
-        buffer.weights[at] = shared_weights(shared, path_pixel(buffer, at, sensor_, is_box_), buffer.pdf[at]);
+void ProfileCamera::Paths::meet_film(const CameraPathBuffer& buffer, std::size_t first, SharedPaths& chunk) const {
+    const auto column = [&](const auto& of) { return of.data() + first; };
+    if (camera_->is_found_in_a_step_) {
+        const auto vectors = [&](const optics::RayBatch<double>::Vectors& of) {
+            return Vec3<const double*>{column(of.x), column(of.y), column(of.z)};
+        };
+        kernels_->meet_profile_film(camera_->tables(),
+                                    {.film = {column(buffer.film_x), column(buffer.film_y)},
+                                     .ray = {vectors(buffer.origin), vectors(buffer.direction)}},
+                                    chunk);
+        return;
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(chunk.size); ++i) {
+        const Ray<double> out = buffer.ray(first + i);
+        const FilmImportance found =
+            camera_->importance(sensor_, {out.origin, -1.0 * out.direction}, grid_.path(buffer.wavelength[first + i]));
+        for (std::size_t m = 0; m < chunk.others.size(); ++m) {
+            FilmMeetings& meetings = chunk.others[m];
+            const Vec2d at = sensor_.position(found.at_px[m + 1]);
+            meetings.film_x[i] = at.x;
+            meetings.film_y[i] = at.y;
+            meetings.transmittance[i] = found.transmittance[m + 1] > 0.0 ? found.transmittance[m + 1] : -1.0;
+            meetings.pupil_pdf[i] = 1.0;
+            meetings.per_etendue[i] = found.pdf[m + 1];
+        }
     }
 }
 
@@ -225,7 +232,7 @@ FilmImportance ProfileCamera::film(const Sensor& sensor, const Meeting& meeting,
                                    const spectral::PathWavelengths& path) const {
     FilmImportance found;
     const Chief& chief = meeting.chief;
-    const double g = per_etendue(chief, meeting.offset);
+    const double g = profile_per_etendue(tables(), chief, meeting.offset);
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         const std::uint16_t wavelength = path.index[i];
         const RadialProfile& at = profile_.at[wavelength];
@@ -237,7 +244,7 @@ FilmImportance ProfileCamera::film(const Sensor& sensor, const Meeting& meeting,
         if (!opening_.is_pinhole) {
             const Vec2d axes =
                 semi_axes(wavelength, pupil_area(wavelength, place->x, place->slope, chief.sine, illumination));
-            if (square(meeting.offset.x / axes.x) + square(meeting.offset.y / axes.y) > kEdge) {
+            if (square(meeting.offset.x / axes.x) + square(meeting.offset.y / axes.y) > kPupilEdge) {
                 continue;
             }
         }
@@ -325,7 +332,7 @@ PathPdf ProfileCamera::pdf(const LightOrigin& from, const Ray<double>& outwards,
     const double towards = dot(outwards.direction, chief->outwards());
     const double along = dot(chief->centre() - outwards.origin, chief->outwards()) / towards;
     const Vec2d offset = chief->across(outwards.origin + along * outwards.direction - chief->centre());
-    if (!(towards > 0.0) || dot(offset, offset) > square(disc.radius) * kEdge) {
+    if (!(towards > 0.0) || dot(offset, offset) > square(disc.radius) * kPupilEdge) {
         return {};
     }
     const double per_mm2 = 1.0 / (kPi * square(disc.radius));

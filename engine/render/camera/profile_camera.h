@@ -9,6 +9,8 @@
 #include "engine/render/camera/camera_paths.h"
 #include "engine/render/camera/film_importance.h"
 #include "engine/render/camera/lens_profile.h"
+#include "engine/render/camera/packet/profile_path.h"
+#include "engine/render/camera/shared_rays.h"
 
 namespace lensproof::render {
 
@@ -49,8 +51,9 @@ class ProfileCamera {
     /// The same samples on the film as an exact camera's. Held by it: the camera.
     class Paths {
       public:
+        /// `level`: that of `trace_batch`.
         Paths(const ProfileCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
-              PathCarry carry);
+              PathCarry carry, std::optional<SimdLevel> level = {});
 
         void start(const CameraPathRange& range) { samples_.start(range); }
         bool fill(CameraPathBuffer& buffer);
@@ -58,13 +61,18 @@ class ProfileCamera {
         [[nodiscard]] std::int64_t started() const { return started_; }
 
       private:
-        void append(const PathStarts& starts, std::size_t sample, CameraPathBuffer& buffer);
+        void append(PathStarts& starts, CameraPathBuffer& buffer);
+        /// Where the others end of the chunk's paths, which begin with `first`.
+        void meet_film(const CameraPathBuffer& buffer, std::size_t first, SharedPaths& chunk) const;
 
         FilmSamples samples_;
-        const ProfileCamera* camera_;
-        std::int64_t started_ = 0;
+        PathWeigher weigher_;
+        optics::RayBatch<double> rays_;
         Sensor sensor_;
         spectral::SpectralGrid grid_;
+        const ProfileCamera* camera_;
+        const PathKernels* kernels_;
+        std::int64_t started_ = 0;
         PathCarry carry_;
         bool is_box_;  // wider filters draw film points unevenly: the hero stays alone
     };
@@ -83,21 +91,7 @@ class ProfileCamera {
     [[nodiscard]] std::string bytes() const;
 
   private:
-    /// A chief ray, seen from its pupil's centre.
-    struct Chief {
-        Vec2d azimuth;  // of the film point, of unit length
-        double angle = 0.0;
-        double sine = 0.0;
-        double cosine = 1.0;
-        double pupil_z = 0.0;
-        double pupil_slope = 0.0;  // dz_e/dθ
-
-        [[nodiscard]] Vec3d centre() const { return {0.0, 0.0, pupil_z}; }
-        [[nodiscard]] Vec3d outwards() const { return {-sine * azimuth.x, -sine * azimuth.y, -cosine}; }
-        /// From coordinates across the ray, sagittal and tangential, and back.
-        [[nodiscard]] Vec3d across(Vec2d q) const;
-        [[nodiscard]] Vec2d across(const Vec3d& from_centre) const;
-    };
+    using Chief = ProfileChief<double>;
     /// A ray outside, as all wavelengths share it.
     struct Meeting {
         Chief chief;
@@ -115,8 +109,6 @@ class ProfileCamera {
     [[nodiscard]] Chief chief_through(const Vec3d& point) const;
     /// Through an origin that light may be drawn from.
     [[nodiscard]] std::optional<Chief> chief_of(const LightOrigin& from) const;
-    [[nodiscard]] double focus_vergence(const Chief& chief) const;             // κ, 0 from 90° on
-    [[nodiscard]] double per_etendue(const Chief& chief, Vec2d offset) const;  // g
     /// A, mm², of a film point at this radius, where the profile's curves are so.
     [[nodiscard]] double pupil_area(std::uint16_t wavelength, double radius, double angle_slope, double sine,
                                     double illumination) const;
@@ -128,12 +120,35 @@ class ProfileCamera {
     /// Sagittal and tangential, of a pupil of that area.
     [[nodiscard]] Vec2d semi_axes(std::uint16_t wavelength, double area) const;
 
+    /// Curves as packets look them up.
+    struct CurveColumns {
+        std::vector<double> pieces;
+        std::size_t pieces_each = 0;
+        std::vector<double> per_step;
+        std::vector<double> end;
+
+        /// `of(profile)`: the curve of each.
+        template <class Profiles, class Of>
+        CurveColumns(const Profiles& profiles, const Of& of);
+        [[nodiscard]] RadialCurves view() const {
+            return {pieces.data(), static_cast<double>(pieces_each), per_step.data(), end.data()};
+        }
+    };
+    /// For as long as this stays where it is.
+    [[nodiscard]] ProfileTables tables() const;
+
     LensProfile profile_;
     ProfileOpening opening_;
     std::vector<double> axial_radius_;  // of the pupil, a wavelength each
-    double widest_radius_ = 0.0;        // of all pupils' semi-axes
-    double steepest_pupil_ = 0.0;       // |dz_e/dθ|
-    double largest_vergence_ = 0.0;     // κ
+    std::vector<double> transmittance_;
+    bool is_found_in_a_step_;  // every field angle's radius: else each is searched by itself
+    CurveColumns field_angle_;
+    CurveColumns radius_;
+    CurveColumns illumination_;
+    CurveColumns pupil_z_;
+    double widest_radius_ = 0.0;     // of all pupils' semi-axes
+    double steepest_pupil_ = 0.0;    // |dz_e/dθ|
+    double largest_vergence_ = 0.0;  // κ
     double near_mm_ = 0.0;
     double lead_mm_ = 0.0;  // from pupil to front: rays begin so far out
 };

@@ -15,6 +15,13 @@ RadialCurve::RadialCurve(double end, const std::vector<At>& nodes)
     std::ranges::for_each(nodes_, [&](At& node) { node.slope *= step; });
 }
 
+void RadialCurve::append_pieces(std::vector<double>& pieces) const {
+    for (std::size_t i = 0; i < steps(); ++i) {
+        const Piece piece = piece_at(static_cast<int>(i));
+        pieces.insert(pieces.end(), {piece.a, piece.b, piece.c, piece.d});
+    }
+}
+
 RisingCurve::RisingCurve(RadialCurve curve) : curve_(std::move(curve)) {
     const std::size_t steps = curve_.steps();
     const double end = curve_.at(curve_.end()).value;
@@ -24,6 +31,16 @@ RisingCurve::RisingCurve(RadialCurve curve) : curve_(std::move(curve)) {
         nodes.push_back({place.x, 1.0 / place.slope});
     }
     inverse_ = {end, nodes};
+}
+
+bool RisingCurve::is_found_in_a_step() const {
+    const auto looks = static_cast<int>(8 * inverse_.steps());
+    for (int i = 0; i <= looks; ++i) {
+        if (!step_to(inverse_.end() * i / looks).is_small) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /// By halving, and what is left by Newton's steps.

@@ -37,6 +37,9 @@ class RadialCurve {
     }
 
     [[nodiscard]] std::size_t steps() const { return nodes_.size() - 1; }
+    [[nodiscard]] double per_step() const { return per_step_; }
+    /// a, b, c, d of each step's a + t (b + t (c + t d)), t from 0 to 1.
+    void append_pieces(std::vector<double>& pieces) const;
 
     /// As bytes, to the last bit; and from the front of such, nothing where there is no curve.
     void append_to(std::string& bytes) const;
@@ -74,6 +77,10 @@ class RisingCurve {
     explicit RisingCurve(RadialCurve curve);
 
     [[nodiscard]] const RadialCurve& curve() const { return curve_; }
+    /// Places by values, to 1e-6 of them at least where `is_found_in_a_step`.
+    [[nodiscard]] const RadialCurve& inverse() const { return inverse_; }
+    /// Whether one step of Newton's from the inverse is enough everywhere.
+    [[nodiscard]] bool is_found_in_a_step() const;
     [[nodiscard]] double end() const { return curve_.end(); }
     [[nodiscard]] RadialCurve::At at(double x) const { return curve_.at(x); }
 
@@ -86,16 +93,23 @@ class RisingCurve {
         if (!(value >= 0.0 && value <= inverse_.end())) {
             return std::nullopt;
         }
-        // The inverse's curve errs by some 1e-9, its slope by less than the square root: one step of Newton's is
-        // enough.
+        const Step step = step_to(value);
+        return step.is_small ? step.place : searched(value);
+    }
+
+  private:
+    struct Step {
+        Place place;
+        bool is_small;
+    };
+    /// The inverse's curve errs by some 1e-9, its slope by less than the square root: one step of Newton's is enough.
+    [[nodiscard]] Step step_to(double value) const {
         const RadialCurve::At near = inverse_.at(value);
         const RadialCurve::At there = curve_.at(std::clamp(near.value, 0.0, curve_.end()));
         const double change = (there.value - value) * near.slope;
         constexpr double kSmall = 1e-6;
-        return std::abs(change) <= kSmall * near.value ? Place{near.value - change, there.slope} : searched(value);
+        return {{near.value - change, there.slope}, std::abs(change) <= kSmall * near.value};
     }
-
-  private:
     [[nodiscard]] Place searched(double value) const;
 
     RadialCurve curve_;

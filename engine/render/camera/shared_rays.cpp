@@ -43,20 +43,51 @@ void find_pupil_pdfs(const pupil::PupilSlices& pupil, std::span<const std::uint1
     }
 }
 
+PathWeigher::PathWeigher(const spectral::SpectralGrid& grid, const Sensor& sensor, bool is_box, bool has_pdfs,
+                         const PathKernels& kernels)
+    : grid_(grid), sensor_(sensor), is_box_(is_box), kernels_(&kernels) {
+    chunk_.has_pdfs = has_pdfs;
+}
+
+void PathWeigher::take_heroes(const CameraPathBuffer& paths, std::size_t first) {
+    const auto at = static_cast<std::ptrdiff_t>(first);
+    std::copy_n(paths.weight.begin() + at, chunk_.size, chunk_.hero_weight.begin());
+    std::copy_n(paths.etendue.begin() + at, chunk_.size, chunk_.hero_etendue.begin());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(chunk_.size); ++i) {
+        const Vec2d centre = path_pixel(paths, first + i, sensor_, is_box_);
+        chunk_.centre_x[i] = centre.x;
+        chunk_.centre_y[i] = centre.y;
+        const spectral::PathWavelengths wavelengths = grid_.path(paths.wavelength[first + i]);
+        chunk_.hero_wavelengths[i] = wavelengths.index[0];
+        for (std::size_t m = 1; m < spectral::kWavelengthsPerPath; ++m) {
+            chunk_.other_wavelengths[m - 1][i] = wavelengths.index[m];
+        }
+    }
+}
+
+void PathWeigher::give_weights(CameraPathBuffer& paths, std::size_t first) const {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(chunk_.size); ++i) {
+        for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
+            paths.weights[first + i][m] = chunk_.weight[m][i];
+        }
+        if (chunk_.has_pdfs) {
+            paths.pdf[first + i] = {.shared = chunk_.shared_pdf[i], .hero = chunk_.hero_pdf[i]};
+        }
+    }
+}
+
 template <class T>
 BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
                                     const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box, PathCarry carry,
                                     std::optional<SimdLevel> level, const optics::SpectralLens<double>* at_borders)
-    : grid_(grid),
+    : weigher_(grid, sensor, is_box, carry == PathCarry::wavelengths_and_pdfs, path_kernels(level)),
       lens_(&lens),
       pupil_(&pupil),
       sensor_(sensor),
-      is_box_(is_box),
       kernels_(&path_kernels(level)),
       tracing_{.carry = optics::Carry::transmittance, .level = level},
       turned_(kSharedChunk),
       rays_(kSharedChunk) {
-    chunk_.has_pdfs = carry == PathCarry::wavelengths_and_pdfs;
     if (at_borders != nullptr) {
         const optics::TraceLens<double>& judge = at_borders->at(0);
         const double length_mm = std::abs(judge.image_z - judge.surfaces.front().vertex_z);
@@ -69,35 +100,12 @@ BasicSharedRays<T>::BasicSharedRays(const spectral::SpectralGrid& grid, const op
 
 template <class T>
 void BasicSharedRays<T>::weigh(CameraPathBuffer& paths) {
-    paths.weights.resize(static_cast<std::size_t>(paths.size));
-    paths.pdf.resize(chunk_.has_pdfs ? paths.weights.size() : 0);
-    for (int first = 0; first < paths.size; first += kSharedChunk) {
-        chunk_.size = std::min(kSharedChunk, paths.size - first);
-        const auto at = static_cast<std::size_t>(first);
-        take_heroes(paths, at);
-        trace(paths, at);
+    weigher_.weigh(paths, [&](std::size_t first, SharedPaths& chunk) {
+        trace(paths, first, chunk);
         if (judge_) {
-            trace_again_at_borders(paths, at);
+            trace_again_at_borders(paths, first, chunk);
         }
-        kernels_->trace_shared(sensor_, chunk_);
-        give_weights(paths, at);
-    }
-}
-
-template <class T>
-void BasicSharedRays<T>::take_heroes(const CameraPathBuffer& paths, std::size_t first) {
-    const auto at = static_cast<std::ptrdiff_t>(first);
-    std::copy_n(paths.weight.begin() + at, chunk_.size, chunk_.hero_weight.begin());
-    std::copy_n(paths.etendue.begin() + at, chunk_.size, chunk_.hero_etendue.begin());
-    for (std::size_t i = 0; i < static_cast<std::size_t>(chunk_.size); ++i) {
-        const Vec2d centre = path_pixel(paths, first + i, sensor_, is_box_);
-        chunk_.centre_x[i] = centre.x;
-        chunk_.centre_y[i] = centre.y;
-        const spectral::PathWavelengths wavelengths = grid_.path(paths.wavelength[first + i]);
-        for (std::size_t m = 1; m < spectral::kWavelengthsPerPath; ++m) {
-            chunk_.other_wavelengths[m - 1][i] = wavelengths.index[m];
-        }
-    }
+    });
 }
 
 namespace {
@@ -125,9 +133,9 @@ void copy_rays(const optics::RayBatch<T>& from, optics::RayBatch<T>& to) {
 
 /// From outside forward through the lens.
 template <class T>
-void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first) {
+void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first, SharedPaths& chunk) {
     const auto turn = [&](const auto& column, auto& to, const auto& changed) {
-        copy_changed(column, first, chunk_.size, to, changed);
+        copy_changed(column, first, chunk.size, to, changed);
     };
     turn(paths.origin.x, turned_.origin.x, std::identity());
     turn(paths.origin.y, turned_.origin.y, std::identity());
@@ -135,14 +143,14 @@ void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first)
     turn(paths.direction.x, turned_.direction.x, std::negate<>());
     turn(paths.direction.y, turned_.direction.y, std::negate<>());
     turn(paths.direction.z, turned_.direction.z, std::negate<>());
-    turned_.size = chunk_.size;
-    for (std::size_t m = 0; m < chunk_.others.size(); ++m) {
+    turned_.size = chunk.size;
+    for (std::size_t m = 0; m < chunk.others.size(); ++m) {
         copy_rays(turned_, rays_);
-        std::copy_n(chunk_.other_wavelengths[m].begin(), chunk_.size, rays_.wavelength.begin());
+        std::copy_n(chunk.other_wavelengths[m].begin(), chunk.size, rays_.wavelength.begin());
         optics::trace_batch<optics::Direction::forward>(*lens_, rays_, tracing_);
-        FilmMeetings& meetings = chunk_.others[m];
+        FilmMeetings& meetings = chunk.others[m];
         meet_film(lens_->at(0).image_z, pupil_->map().plane_z(), *kernels_, rays_, meetings);
-        if (chunk_.has_pdfs) {
+        if (chunk.has_pdfs) {
             find_pupil_pdfs(*pupil_, std::span(rays_.wavelength).first(static_cast<std::size_t>(rays_.size)), *kernels_,
                             meetings);
         }
@@ -150,37 +158,25 @@ void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, std::size_t first)
 }
 
 template <class T>
-void BasicSharedRays<T>::trace_again_at_borders(const CameraPathBuffer& paths, std::size_t first) {
+void BasicSharedRays<T>::trace_again_at_borders(const CameraPathBuffer& paths, std::size_t first, SharedPaths& chunk) {
     auto& [lens, within_mm, rays, meetings] = *judge_;
     OtherRays found;
-    const int count = kernels_->find_at_borders(sensor_, within_mm, chunk_, found);
+    const int count = kernels_->find_at_borders(sensor_, within_mm, chunk, found);
     for (int done = 0; done < count; done += rays.size) {
         rays.size = std::min(kSharedChunk, count - done);
         const std::span now(found.data() + done, static_cast<std::size_t>(rays.size));
         for (std::size_t k = 0; k < now.size(); ++k) {
             const Ray<double> out = paths.ray(first + now[k].path);
             rays.set(static_cast<int>(k), {out.origin, -1.0 * out.direction});
-            rays.wavelength[k] = chunk_.other_wavelengths[now[k].other][now[k].path];
+            rays.wavelength[k] = chunk.other_wavelengths[now[k].other][now[k].path];
         }
         optics::trace_batch<optics::Direction::forward>(*lens, rays, tracing_);
         meet_film(lens->at(0).image_z, pupil_->map().plane_z(), *kernels_, rays, meetings);
         for (std::size_t k = 0; k < now.size(); ++k) {
-            FilmMeetings& to = chunk_.others[now[k].other];
+            FilmMeetings& to = chunk.others[now[k].other];
             to.film_x[now[k].path] = meetings.film_x[k];
             to.film_y[now[k].path] = meetings.film_y[k];
             to.transmittance[now[k].path] = meetings.transmittance[k];
-        }
-    }
-}
-
-template <class T>
-void BasicSharedRays<T>::give_weights(CameraPathBuffer& paths, std::size_t first) const {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(chunk_.size); ++i) {
-        for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
-            paths.weights[first + i][m] = chunk_.weight[m][i];
-        }
-        if (chunk_.has_pdfs) {
-            paths.pdf[first + i] = {.shared = chunk_.shared_pdf[i], .hero = chunk_.hero_pdf[i]};
         }
     }
 }

@@ -121,6 +121,49 @@ template <class Abi>
     rays.size = starts.size;
 }
 
+template <class Abi>
+[[gnu::flatten]] void leave_profile_camera(const ProfileTables& tables, PathStarts& starts,
+                                           optics::RayBatch<double>& rays) {
+    using Numbers = Twin<Twin<Pack<double, Abi>>>;
+    for (int i = 0; i < starts.size; i += Numbers::kLanes) {
+        const ProfilePaths<Numbers> paths(
+            tables, {Numbers::load(starts.film_x.data() + i), Numbers::load(starts.film_y.data() + i)},
+            Numbers::load(starts.wavelength.data() + i));
+        const auto [ray, illumination, etendue] =
+            paths.draw(Numbers::load(starts.pupil_u.data() + i), Numbers::load(starts.pupil_v.data() + i));
+        illumination.store(starts.weight.data() + i);
+        etendue.store(starts.etendue.data() + i);
+        rays.store(i, ray);
+    }
+    rays.size = starts.size;
+}
+
+template <class Abi>
+[[gnu::flatten]] void meet_profile_film(const ProfileTables& tables, const ProfilePathColumns& columns,
+                                        SharedPaths& shared) {
+    using Numbers = Twin<Pack<double, Abi>>;
+    static_assert(Numbers::kLanes <= optics::kMostLanes);  // buffers end there
+    const auto vector = [](const Vec3<const double*>& of, int i) {
+        return Vec3<Numbers>{Numbers::load(of.x + i), Numbers::load(of.y + i), Numbers::load(of.z + i)};
+    };
+    for (int i = 0; i < shared.size; i += Numbers::kLanes) {
+        const ProfilePaths<Numbers> paths(tables,
+                                          {Numbers::load(columns.film.x + i), Numbers::load(columns.film.y + i)},
+                                          Numbers::load(shared.hero_wavelengths.data() + i));
+        const Vec2<Numbers> q = paths.offset({vector(columns.ray.origin, i), vector(columns.ray.direction, i)});
+        const Numbers g = profile_per_etendue(tables, paths.chief(), q);
+        for (std::size_t m = 0; m < shared.others.size(); ++m) {
+            const auto arrival = paths.arrival(Numbers::load(shared.other_wavelengths[m].data() + i), q, g);
+            FilmMeetings& meetings = shared.others[m];
+            arrival.film.x.store(meetings.film_x.data() + i);
+            arrival.film.y.store(meetings.film_y.data() + i);
+            arrival.transmittance.store(meetings.transmittance.data() + i);
+            arrival.per_etendue.store(meetings.per_etendue.data() + i);
+            Numbers(1.0).store(meetings.pupil_pdf.data() + i);
+        }
+    }
+}
+
 template <class Abi, class T>
 [[gnu::flatten]] void cross_film_with(double film_z, double pupil_z, const optics::RayBatch<T>& behind,
                                       FilmMeetings& meetings) {
@@ -220,6 +263,8 @@ PathKernels path_kernels_at<SimdLevel::LENSPROOF_LEVEL>() {
             .draw_pupil_points = draw_pupil_points<Abi>,
             .aim_rays = aim_rays<Abi>,
             .leave_ideal_camera = leave_ideal_camera<Abi>,
+            .leave_profile_camera = leave_profile_camera<Abi>,
+            .meet_profile_film = meet_profile_film<Abi>,
             .cross_film = cross_film_with<Abi, double>,
             .cross_film_in_float = cross_film_with<Abi, float>,
             .weigh_pupil_points = weigh_pupil_points<Abi>,

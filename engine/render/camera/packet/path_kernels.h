@@ -8,9 +8,16 @@
 #include "engine/pupil/pupil_slice.h"
 #include "engine/render/camera/packet/ideal_path.h"
 #include "engine/render/camera/packet/path_chunk.h"
+#include "engine/render/camera/packet/profile_path.h"
 #include "engine/render/camera/packet/shared_chunk.h"
 
 namespace lensproof::render {
+
+/// Paths out of a camera with a lens's profile; aligned for packets.
+struct ProfilePathColumns {
+    Vec2<const double*> film;
+    Ray<const double*> ray;
+};
 
 /// The loops of one level; all levels yield the same bits.
 struct PathKernels {
@@ -25,6 +32,12 @@ struct PathKernels {
 
     /// From film points and numbers for the pupil the rays out of an ideal camera, and their weights.
     void (*leave_ideal_camera)(const IdealOpticsColumns& optics, PathStarts& starts, optics::RayBatch<double>& rays);
+
+    /// The same out of a camera with a lens's profile, with weights but for the filter's; 0: no path.
+    void (*leave_profile_camera)(const ProfileTables& tables, PathStarts& starts, optics::RayBatch<double>& rays);
+
+    /// Where such paths end at the others' wavelengths.
+    void (*meet_profile_film)(const ProfileTables& tables, const ProfilePathColumns& paths, SharedPaths& shared);
 
     /// Where rays behind the lens cross film and pupil.
     void (*cross_film)(double film_z, double pupil_z, const optics::RayBatch<double>& behind, FilmMeetings& meetings);

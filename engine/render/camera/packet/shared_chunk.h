@@ -40,6 +40,7 @@ struct alignas(optics::kPacketAlignment) SharedPaths {
     SharedColumn<double> centre_y;
     SharedColumn<double> hero_weight;  // as CameraPathBuffer has them
     SharedColumn<double> hero_etendue;
+    SharedColumn<std::uint16_t> hero_wavelengths;
     std::array<SharedColumn<std::uint16_t>, kOtherWavelengths> other_wavelengths;
     std::array<FilmMeetings, kOtherWavelengths> others;
     std::array<SharedColumn<float>, spectral::kWavelengthsPerPath> weight;  // as SharedWeights has them
