@@ -122,7 +122,7 @@ template <class T>
 class ProfilePaths {
   public:
     ProfilePaths(const ProfileTables& tables, const Vec2<T>& film, const T& wavelength)
-        : tables_(tables), wavelength_(wavelength), of_wavelength_(wavelength) {
+        : of_wavelength_(wavelength), wavelength_(wavelength), tables_(tables) {
         using std::sqrt;
         const T radius = sqrt(dot(film, film));
         is_lit_ = radius < of_wavelength_.look_up(tables.field_angle.end);
@@ -212,13 +212,13 @@ class ProfilePaths {
         return {azimuth, angle, turn.y, turn.x, pupil.value, select(is_within, pupil.slope, T(0.0))};
     }
 
-    const ProfileTables& tables_;
-    T wavelength_;
     Index<T> of_wavelength_;
-    MaskOf<T> is_lit_;
+    T wavelength_;
     T radius_;
     T angle_slope_;
     ProfileChief<T> chief_;
+    const ProfileTables& tables_;
+    MaskOf<T> is_lit_;
 };
 
 }  // namespace lensproof::render
