@@ -1,6 +1,5 @@
 // engine/base/twin.h — two packs in step, as a number type for loops that wait for their own results.
 #pragma once
-#include <cstdint>
 
 namespace lensproof {
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,6 +16,16 @@
 #include "engine/render/camera/camera.h"
 
 namespace lensproof::float_camera_test {
+
+struct Setting {
+    const char* lens;
+    double f_number;
+    double half_diagonal_mm;
+};
+constexpr std::array<Setting, 4> kCameras{{{"double-gauss-tronnier", 2.0, 21.6},
+                                           {"tessar", 2.8, 45.0},
+                                           {"muller-fisheye", 8.0, 12.75},
+                                           {"canon-zoom-70-200", 2.8, 21.6}}};
 
 std::unique_ptr<render::Camera> camera_of(const char* lens, double f_number, double half_diagonal_mm,
                                           render::LensModel model) {
@@ -69,10 +80,7 @@ double from_rim_um(const optics::Lens& lens, const optics::TraceLens<double>& tr
 // And from outside each leads back to the film point that it came from, in float too, within the bound of places and
 // what that of directions makes of the lens's length.
 TEST(FloatCamera, TracesTheSamePaths) {
-    for (const auto& [name, f_number, half_diagonal] : {std::tuple{"double-gauss-tronnier", 2.0, 21.6},
-                                                        {"tessar", 2.8, 45.0},
-                                                        {"muller-fisheye", 8.0, 12.75},
-                                                        {"canon-zoom-70-200", 2.8, 21.6}}) {
+    for (const auto& [name, f_number, half_diagonal] : kCameras) {
         const auto in_double = camera_of(name, f_number, half_diagonal, render::LensModel::exact_double);
         const auto in_float = camera_of(name, f_number, half_diagonal, render::LensModel::exact_float);
         const Paths expected = paths_of(*in_double);
@@ -165,10 +173,7 @@ Told told_by(const render::Camera& camera) {
 // than a ulp of it; all else has the bits of the one in double, rays towards the camera and pdfs too. Checkpoints tell
 // them apart.
 TEST(FloatCamera, CountsOtherWavelengthsOfHeroesInDouble) {
-    for (const auto& [name, f_number, half_diagonal] : {std::tuple{"double-gauss-tronnier", 2.0, 21.6},
-                                                        {"tessar", 2.8, 45.0},
-                                                        {"muller-fisheye", 8.0, 12.75},
-                                                        {"canon-zoom-70-200", 2.8, 21.6}}) {
+    for (const auto& [name, f_number, half_diagonal] : kCameras) {
         const auto in_double = camera_of(name, f_number, half_diagonal, render::LensModel::exact_double);
         const auto usual = camera_of(name, f_number, half_diagonal, render::LensModel::exact);
         const Told expected = told_by(*in_double);

@@ -10,7 +10,7 @@
 #include "engine/render/camera/film_importance.h"
 #include "engine/render/camera/lens_profile.h"
 #include "engine/render/camera/packet/profile_path.h"
-#include "engine/render/camera/shared_rays.h"
+#include "engine/render/camera/path_weigher.h"
 
 namespace lensproof::render {
 

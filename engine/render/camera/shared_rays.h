@@ -1,14 +1,12 @@
 // engine/render/camera/shared_rays.h — what a path outside the lens counts at each of its wavelengths.
 #pragma once
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
 
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_slices.h"
-#include "engine/render/camera/camera_paths.h"
-#include "engine/spectral/spectral_sample.h"
+#include "engine/render/camera/path_weigher.h"
 
 namespace lensproof::render {
 
@@ -21,39 +19,6 @@ void meet_film(double film_z, double pupil_z, const PathKernels& kernels, const 
 /// With which pdf camera paths of these wavelengths, one a meeting, draw those points of the pupil.
 void find_pupil_pdfs(const pupil::PupilSlices& pupil, std::span<const std::uint16_t> wavelengths,
                      const PathKernels& kernels, FilmMeetings& meetings);
-
-/// Weighs paths some dozen at a time, wherever the others' rays are known to end.
-class PathWeigher {
-  public:
-    /// As BasicSharedRays has them. `has_pdfs`: of the others; else each that arrives has its hero's.
-    PathWeigher(const spectral::SpectralGrid& grid, const Sensor& sensor, bool is_box, bool has_pdfs,
-                const PathKernels& kernels);
-
-    /// `meet(first, chunk)` writes where the others end of the chunk's paths, which begin with `first`.
-    template <class Meet>
-    void weigh(CameraPathBuffer& paths, const Meet& meet) {
-        paths.weights.resize(static_cast<std::size_t>(paths.size));
-        paths.pdf.resize(chunk_.has_pdfs ? paths.weights.size() : 0);
-        for (int first = 0; first < paths.size; first += kSharedChunk) {
-            chunk_.size = std::min(kSharedChunk, paths.size - first);
-            const auto at = static_cast<std::size_t>(first);
-            take_heroes(paths, at);
-            meet(at, chunk_);
-            kernels_->trace_shared(sensor_, chunk_);
-            give_weights(paths, at);
-        }
-    }
-
-  private:
-    void take_heroes(const CameraPathBuffer& paths, std::size_t first);
-    void give_weights(CameraPathBuffer& paths, std::size_t first) const;
-
-    spectral::SpectralGrid grid_;
-    Sensor sensor_;
-    bool is_box_;
-    const PathKernels* kernels_;
-    SharedPaths chunk_{};
-};
 
 /// Camera paths are drawn for their hero; outside the lens the ray serves the other wavelengths too, each of which
 /// reaches it by its own path through the glass, from its own point on the film. Of the four techniques "draw the ray

@@ -158,7 +158,7 @@ template <class Abi>
             arrival.film.x.store(meetings.film_x.data() + i);
             arrival.film.y.store(meetings.film_y.data() + i);
             arrival.transmittance.store(meetings.transmittance.data() + i);
-            arrival.per_etendue.store(meetings.per_etendue.data() + i);
+            arrival.per_etendue.store(meetings.per_etendue.data() + i);  // all of the pdf
             Numbers(1.0).store(meetings.pupil_pdf.data() + i);
         }
     }

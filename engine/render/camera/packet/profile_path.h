@@ -42,12 +42,13 @@ struct CurvePoint {
     T slope;
 };
 
-/// x: to the end, or some roundings beyond.
+/// Beyond the end as a line.
 template <class T>
 CurvePoint<T> curve_at(const RadialCurves& curves, const T& curve, const T& x) {
     const T per_step = look_up(curves.per_step, curve);
     const T step = x * per_step;
-    const T i = whole(step);
+    const T last(curves.pieces_each - 1.0);
+    const T i = whole(select(step < last, step, last));
     const T t = step - i;
     const Index<T> piece(T(4.0) * (curve * T(curves.pieces_each) + i));
     const T b = piece.look_up(curves.pieces + 1);
@@ -81,7 +82,7 @@ struct ProfileChief {
 
 /// κ; 0 from 90° on.
 template <class T>
-T focus_vergence(const ProfileTables& tables, const ProfileChief<T>& chief) {
+T profile_focus_vergence(const ProfileTables& tables, const ProfileChief<T>& chief) {
     const auto is_seen = chief.cosine > T(tables.is_pinhole ? 2.0 : 0.0);
     return select(is_seen, T(1.0) / select(is_seen, chief.pupil_z - T(tables.focus_z), T(1.0)), T(0.0));
 }
@@ -89,7 +90,7 @@ T focus_vergence(const ProfileTables& tables, const ProfileChief<T>& chief) {
 /// g of a point of the pupil.
 template <class T>
 T profile_per_etendue(const ProfileTables& tables, const ProfileChief<T>& chief, const Vec2<T>& q) {
-    const T k = focus_vergence(tables, chief);
+    const T k = profile_focus_vergence(tables, chief);
     const T v = k * chief.cosine;
     const T spread = T(1.0) + v * v * dot(q, q);
     return spread * spread / ((T(1.0) + v * chief.pupil_slope * chief.sine) * (T(1.0) - k * chief.sine * q.y));
@@ -151,7 +152,8 @@ class ProfilePaths {
             q = {axes.x * cross(chief_.azimuth, in_disc), axes.y * dot(chief_.azimuth, in_disc)};
         }
         const Vec3<T> from_centre = chief_.across(q);
-        const Vec3<T> along = chief_.outwards() - (focus_vergence(tables_, chief_) * chief_.cosine) * from_centre;
+        const Vec3<T> along =
+            chief_.outwards() - (profile_focus_vergence(tables_, chief_) * chief_.cosine) * from_centre;
         const Vec3<T> direction = (T(1.0) / sqrt(dot(along, along))) * along;
         return {.ray = {chief_.centre() + from_centre + T(tables_.lead_mm) * direction, direction},
                 .illumination = select(is_path, found, T(0.0)),
